@@ -55,9 +55,9 @@ using Codebooks = std::tuple<int, int, py::bytes, py::bytes, py::bytes>;
 // width, height, color, alpha
 using Level = std::tuple<int, int, py::bytes, py::bytes>;
 
-py::list decoded_etc1s(const Codebooks& given, const std::vector<Level>& levels,
+py::list decoded_etc1s(const Codebooks& codebook_arrays, const std::vector<Level>& levels,
                        const py::object& callback) {
-  const auto& [endpoint_count, selector_count, endpoints, selectors, tables] = given;
+  const auto& [endpoint_count, selector_count, endpoints, selectors, tables] = codebook_arrays;
   const Etc1sCodebooks codebooks{endpoint_count, selector_count, span_of(endpoints),
                                  span_of(selectors), span_of(tables)};
   std::vector<Etc1sLevel> parts;
@@ -82,7 +82,7 @@ py::bytes bytes_from(const std::vector<std::uint8_t>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// The codebooks and, of each level, color and alpha, as decode_etc1s takes them.
+// The codebooks, and the color and alpha of each level, as decode_etc1s expects them.
 py::tuple compressed_etc1s(const std::vector<Array<std::uint8_t>>& levels, int quality,
                            bool has_alpha, bool is_color, const std::string& effort,
                            const py::object& callback, int threads) {
@@ -112,8 +112,9 @@ py::tuple compressed_etc1s(const std::vector<Array<std::uint8_t>>& levels, int q
 void bind_blocks(py::module_& m) {
   m.def("block_layouts", [] {
     py::dict layouts;
-    for (const BlockLayout& one : block_layouts()) {
-      layouts[one.name] = py::make_tuple(one.columns, one.rows, one.bytes, one.is_float);
+    for (const BlockLayout& layout : block_layouts()) {
+      layouts[layout.name] =
+          py::make_tuple(layout.columns, layout.rows, layout.bytes, layout.is_float);
     }
     return layouts;
   });

@@ -38,14 +38,14 @@ Array<std::int64_t> bound_subsample(const Array<double>& points, double spacing,
 Array<bool> bound_find_outliers(const Array<double>& points, int neighbours, double factor,
                                 const py::object& callback, int threads) {
   const Progress progress = to_progress(callback);
-  std::vector<bool> found;
+  std::vector<bool> is_outlier;
   {
     const py::gil_scoped_release unlocked;
-    found = find_outliers(rows_of(points), neighbours, factor, progress, threads);
+    is_outlier = find_outliers(rows_of(points), neighbours, factor, progress, threads);
   }
-  Array<bool> result(static_cast<py::ssize_t>(found.size()));
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    result.mutable_at(static_cast<py::ssize_t>(i)) = found[i];
+  Array<bool> result(static_cast<py::ssize_t>(is_outlier.size()));
+  for (std::size_t i = 0; i < is_outlier.size(); ++i) {
+    result.mutable_at(static_cast<py::ssize_t>(i)) = is_outlier[i];
   }
   return result;
 }
@@ -60,12 +60,12 @@ std::vector<ScanView> views_of(const std::vector<Scan>& scans) {
   return views;
 }
 
-// The matrices, (scans, 4, 4), the median distances before and after, and the numbers of pairs.
-py::tuple to_tuple(const Alignment& found) {
-  const auto count = static_cast<py::ssize_t>(found.motions.size());
+// Matrices (scans, 4, 4), median distances before and after, and numbers of pairs.
+py::tuple to_tuple(const Alignment& alignment) {
+  const auto count = static_cast<py::ssize_t>(alignment.motions.size());
   Array<double> matrices({count, py::ssize_t{4}, py::ssize_t{4}});
   for (py::ssize_t s = 0; s < count; ++s) {
-    const RigidMotion& motion = found.motions[static_cast<std::size_t>(s)];
+    const RigidMotion& motion = alignment.motions[static_cast<std::size_t>(s)];
     for (py::ssize_t r = 0; r < 4; ++r) {
       const auto row = static_cast<std::size_t>(r);
       for (py::ssize_t c = 0; c < 3; ++c) {
@@ -75,22 +75,23 @@ py::tuple to_tuple(const Alignment& found) {
       matrices.mutable_at(s, r, 3) = r < 3 ? motion.shift[row] : 1.0;
     }
   }
-  return py::make_tuple(std::move(matrices), found.before, found.after, py::cast(found.pairs));
+  return py::make_tuple(std::move(matrices), alignment.before, alignment.after,
+                        py::cast(alignment.pairs));
 }
 
 py::tuple bound_align_scans(const std::vector<Scan>& scans, std::optional<double> reach,
                             int iterations, const py::object& callback, int threads) {
   const AlignOptions options{reach, iterations, to_progress(callback), threads};
   const std::vector<ScanView> views = views_of(scans);
-  Alignment found;
+  Alignment alignment;
   {
     const py::gil_scoped_release unlocked;
-    found = align_scans(views, options);
+    alignment = align_scans(views, options);
   }
-  return to_tuple(found);
+  return to_tuple(alignment);
 }
 
-// `matrices` has one for each scan.
+// `matrices` has one matrix per scan.
 py::tuple bound_align_to_surface(const std::vector<Scan>& scans,
                                  const std::vector<Array<double>>& matrices,
                                  const Array<double>& positions,
@@ -100,12 +101,12 @@ py::tuple bound_align_to_surface(const std::vector<Scan>& scans,
   const std::vector<ScanView> views = views_of(scans);
   std::vector<RigidMotion> motions;
   for (const Array<double>& matrix : matrices) motions.push_back(motion_of(matrix));
-  Alignment found;
+  Alignment alignment;
   {
     const py::gil_scoped_release unlocked;
-    found = align_to_surface(views, motions, {rows_of(positions), rows_of(triangles)}, options);
+    alignment = align_to_surface(views, motions, {rows_of(positions), rows_of(triangles)}, options);
   }
-  return to_tuple(found);
+  return to_tuple(alignment);
 }
 
 std::pair<Array<float>, std::size_t> bound_paint_texture(

@@ -46,7 +46,7 @@ MeshArrays mesh_arrays(TriangleMesh mesh) {
           to_array<std::int32_t>(std::move(mesh.triangles), {triangles, 3})};
 }
 
-// A mesh, and the groups of its triangles, of which there may be none.
+// A mesh, and the groups of its triangles, which may be empty.
 using SourceArrays = std::tuple<py::array, py::array, Array<std::int32_t>>;
 
 std::vector<SourceMesh> sources_of(const std::vector<SourceArrays>& arrays) {
@@ -57,7 +57,7 @@ std::vector<SourceMesh> sources_of(const std::vector<SourceArrays>& arrays) {
   return sources;
 }
 
-// What `make(cells, box, options)` gives of an octree and its sources.
+// Returns make(cells, box, options) for an octree and its source meshes.
 template <typename Make>
 auto contoured(const Octree& octree, const std::vector<SourceArrays>& source_arrays,
                ContourOptions options, const py::object& progress, const Make& make) {
@@ -99,7 +99,7 @@ TracedArrays bound_contour_quads(const Octree& octree,
           to_array<std::int64_t>(std::move(mesh.origins), {origins})};
 }
 
-// The numbers of samples along the axes of a grid.
+// Numbers of samples along the axes of a grid.
 template <std::size_t N>
 std::array<int, N> sides_of(const Array<float>& grid) {
   std::array<int, N> sides;

@@ -9,7 +9,7 @@ namespace py = pybind11;
 
 namespace prefilter::python {
 
-// Python's own, and NumPy's, differ between systems and processors.
+// The functions of Python's math module and of NumPy differ between systems and processors.
 void bind_elementary(py::module_& m) {
   m.def("atan2", elementary::atan2, py::arg("y"), py::arg("x"));
   m.def("cos", elementary::cos, py::arg("x"));
@@ -31,7 +31,7 @@ void bind_elementary(py::module_& m) {
         return powers;
       },
       py::arg("values"), py::arg("exponent"));
-  // Rows of distance, azimuth and elevation, the angles in radians.
+  // Rows of distance, azimuth and elevation, with angles in radians.
   m.def(
       "from_spherical",
       [](const Array<double>& points) {

@@ -14,7 +14,7 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
-// The chunks of rows of tiles, and their sizes. The level holds floats, or bytes.
+// Chunks of tile rows, and their sizes. The level holds floats or bytes.
 std::pair<Array<std::uint8_t>, std::vector<std::int64_t>> bound_exr_tiles(
     const py::array& level, bool srgb, int number, int first_row, int row_count, bool half,
     bool has_alpha, bool multiplies, int threads) {

@@ -30,13 +30,14 @@ void bind_normals(py::module_& m) {
         options.progress = to_progress(progress);
         const ImageView normals_view = view_of(normals);
         const ImageView roughness_view = roughness ? view_of(*roughness) : ImageView();
-        NormalMipmaps made;
+        NormalMipmaps mipmaps;
         {
           const py::gil_scoped_release unlocked;
-          made = normal_mipmaps(normals_view, roughness ? &roughness_view : nullptr, surfaces,
-                                options);
+          mipmaps = normal_mipmaps(normals_view, roughness ? &roughness_view : nullptr, surfaces,
+                                   options);
         }
-        return std::pair(to_arrays(std::move(made.normals)), to_arrays(std::move(made.roughness)));
+        return std::pair(to_arrays(std::move(mipmaps.normals)),
+                         to_arrays(std::move(mipmaps.roughness)));
       },
       py::arg("normals"), py::arg("roughness"), py::arg("surfaces"), py::arg("options"),
       py::arg("progress"));

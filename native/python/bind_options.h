@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The library's structures of options as classes that the Python package sets by name.
+// Binds the library's option structures to classes whose members the Python package sets by name.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -17,8 +17,8 @@
 
 namespace prefilter::python {
 
-/// A class of options, made with the library's defaults, that has those that most have: `wrap`,
-/// `bounds`, `premultiplied` and `threads`.
+/// Binds a class of options, constructed with the library's defaults, with the common members
+/// `wrap`, `bounds`, `premultiplied` and `threads`, if it has them.
 template <typename Options>
 pybind11::class_<Options> bind_options(pybind11::module_& m, const char* name) {
   pybind11::class_<Options> bound(m, name);
@@ -48,18 +48,18 @@ pybind11::class_<Options> bind_options(pybind11::module_& m, const char* name) {
   return bound;
 }
 
-/// An option that has one of the names in a table.
+/// Binds an option whose values are the names in a table.
 template <typename Options, typename Value, std::size_t kCount>
 void bind_named(pybind11::class_<Options>& bound, const char* name, Value Options::*member,
                 const Named<Value> (&table)[kCount]) {
   bound.def_property(
       name, [member, &table](const Options& o) { return std::string(name_in(table, o.*member)); },
-      [name, member, &table](Options& o, const std::string& given) {
-        o.*member = value_named(name, given, table);
+      [name, member, &table](Options& o, const std::string& name_of_value) {
+        o.*member = value_named(name, name_of_value, table);
       });
 }
 
-/// The option "filter", a kernel's name.
+/// Binds the option "filter", the name of a kernel.
 template <typename Options>
 void bind_kernel(pybind11::class_<Options>& bound) {
   bound.def_property(

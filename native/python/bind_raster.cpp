@@ -34,7 +34,7 @@ std::span<const Point2> points_of(const Array<double>& points) {
           static_cast<std::size_t>(points.shape(0))};
 }
 
-// Rows of a map: where x and y go, and the origin.
+// Rows of a map: the images of the x and y axes, and the origin.
 AffineMap2 map_of(const std::array<double, 6>& matrix) {
   return {{matrix[0], matrix[3]}, {matrix[1], matrix[4]}, {matrix[2], matrix[5]}};
 }
@@ -43,13 +43,13 @@ Outline bound_pixels(const Outline& outline, const std::string& rule) {
   return pixel_outline(outline, value_named("fill_rule", rule, kFillRules));
 }
 
-// What an outline encloses where neither coordinate is farther from 0 than a limit.
+// The part of an outline with coordinates within a limit.
 Outline bound_within(const Outline& outline, double limit) {
   const Outline columns = clip_between(outline, {{1.0, 0.0}, 0.0}, -limit, limit);
   return clip_between(columns, {{0.0, 1.0}, 0.0}, -limit, limit);
 }
 
-// A contour of segments that each take `degree` points, from the first point on.
+// A contour of segments with `degree` points each, after the first point.
 void add_contour(Outline* outline, const Array<double>& points, int degree) {
   const std::span<const Point2> all = points_of(points);
   outline->reserve(all.size() + 1, all.size() / degree + 1);
@@ -159,7 +159,7 @@ void bind_stroke_options(py::module_& m) {
       .def_readwrite("dash_offset", &Options::dash_offset);
 }
 
-// An outline, the name of its fill rule, its paint, and whether it winds once.
+// An outline, its fill rule's name, its paint, and whether it winds once.
 using DrawnShape = std::tuple<const Outline*, std::string, const Paint*, bool>;
 
 py::array bound_rasterize(const std::vector<DrawnShape>& drawn, RasterOptions options,
@@ -198,12 +198,12 @@ Outline bound_combine_outlines(const Outline& first, const std::string& first_ru
   return combine(first, rule, second, other, what);
 }
 
-// What a stroke covers, and whether its contours wind once.
+// The outline of a stroke, and whether its contours wind once.
 std::pair<Outline, bool> bound_stroke(const Outline& outline, const StrokeOptions& options,
                                       double tolerance) {
   const py::gil_scoped_release unlocked;
   bool winds_once = false;
-  Outline covered = stroke_soon(outline, options, tolerance, &winds_once);
+  Outline covered = stroke_within_budget(outline, options, tolerance, &winds_once);
   return {std::move(covered), winds_once};
 }
 
@@ -211,7 +211,7 @@ py::bytes packed(std::span<const double> numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()};
 }
 
-// Letters, the bytes of numbers, and whether all is valid; None for too many.
+// Letters, the numbers as bytes, and whether the text is valid; None for too many segments.
 py::tuple bound_read_path(const std::string& text, std::size_t most) {
   PathSteps steps;
   const PathOutcome outcome = read_path_data(text, most, &steps);

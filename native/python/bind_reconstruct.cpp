@@ -96,45 +96,45 @@ py::list to_list(const std::vector<PhantomPlace>& phantoms) {
 
 py::list bound_find_phantoms(const Array<double>& points, const py::object& callback, int threads) {
   const Progress progress = to_progress(callback);
-  std::vector<PhantomPlace> found;
+  std::vector<PhantomPlace> phantoms;
   {
     const py::gil_scoped_release unlocked;
-    // Normals do not count here.
+    // Normals are not used here.
     ArraySource source(rows_of(points), rows_of(points), {}, {}, {}, true);
-    found = find_phantoms(&source, progress, threads);
+    phantoms = find_phantoms(&source, progress, threads);
   }
-  return to_list(found);
+  return to_list(phantoms);
 }
 
 py::dict to_dict(const ReconstructReport& report) {
-  py::dict found;
-  found["points"] = report.points;
-  found["dropped"] = report.dropped.sum();
+  py::dict result;
+  result["points"] = report.points;
+  result["dropped"] = report.dropped.sum();
   py::dict causes;
   causes["not_finite"] = report.dropped.not_finite;
   causes["huge"] = report.dropped.huge;
   causes["weightless"] = report.dropped.weightless;
   causes["normalless"] = report.dropped.normalless;
-  found["causes"] = causes;
-  found["phantoms"] = to_list(report.phantoms);
+  result["causes"] = causes;
+  result["phantoms"] = to_list(report.phantoms);
   constexpr const char* kFaults[] = {"", "missing", "contradictory"};
-  found["normal_fault"] = kFaults[static_cast<std::size_t>(report.normal_fault)];
-  found["contradiction"] = report.contradiction;
-  found["strays"] = report.strays;
-  found["outliers"] = report.outliers;
-  found["vertices"] = report.vertices;
-  found["triangles"] = report.triangles;
-  found["is_flipped"] = report.is_flipped;
-  found["is_room"] = report.is_room;
-  found["residual"] = report.residual;
-  found["depth"] = report.depth;
-  found["cell"] = report.cell;
-  found["float_step"] = report.float_step;
-  found["is_spilled"] = report.is_spilled;
-  found["cut"] = report.trimmed.cut;
-  found["islands"] = report.trimmed.islands;
-  found["island_share"] = report.trimmed.island;
-  return found;
+  result["normal_fault"] = kFaults[static_cast<std::size_t>(report.normal_fault)];
+  result["contradiction"] = report.contradiction;
+  result["strays"] = report.strays;
+  result["outliers"] = report.outliers;
+  result["vertices"] = report.vertices;
+  result["triangles"] = report.triangles;
+  result["is_flipped"] = report.is_flipped;
+  result["is_room"] = report.is_room;
+  result["residual"] = report.residual;
+  result["depth"] = report.depth;
+  result["cell"] = report.cell;
+  result["float_step"] = report.float_step;
+  result["is_spilled"] = report.is_spilled;
+  result["cut"] = report.trimmed.cut;
+  result["islands"] = report.trimmed.islands;
+  result["island_share"] = report.trimmed.island;
+  return result;
 }
 
 std::tuple<Array<double>, Array<std::int32_t>, Array<float>, py::dict> bound_reconstruct(
@@ -156,7 +156,7 @@ std::tuple<Array<double>, Array<std::int32_t>, Array<float>, py::dict> bound_rec
           to_array<float>(sink.take_attributes(), {vertices, width}), to_dict(report)};
 }
 
-// The mesh, its attributes, and what was cut.
+// The mesh, its attributes, and the report of the cut.
 std::tuple<Array<double>, Array<std::int32_t>, Array<float>, py::dict> bound_trim(
     const Array<double>& positions, const Array<std::int32_t>& triangles,
     const Array<float>& attributes, double distance, double hole, double island,
@@ -172,18 +172,18 @@ std::tuple<Array<double>, Array<std::int32_t>, Array<float>, py::dict> bound_tri
         trim_surface(rows_of(positions), rows_of(triangles), values,
                      static_cast<std::size_t>(columns), {distance, hole, island}, progress, &mesh);
   }
-  py::dict found;
-  found["cut"] = report.cut;
-  found["islands"] = report.islands;
-  found["island_share"] = report.island;
+  py::dict cut_report;
+  cut_report["cut"] = report.cut;
+  cut_report["islands"] = report.islands;
+  cut_report["island_share"] = report.island;
   const auto vertices = static_cast<py::ssize_t>(mesh.positions.size());
   const auto faces = static_cast<py::ssize_t>(mesh.triangles.size());
   return {to_array<double>(std::move(mesh.positions), {vertices, 3}),
           to_array<std::int32_t>(std::move(mesh.triangles), {faces, 3}),
-          to_array<float>(std::move(mesh.attributes), {vertices, columns}), found};
+          to_array<float>(std::move(mesh.attributes), {vertices, columns}), cut_report};
 }
 
-// How a surface of a cloud is written.
+// Creates the file that a surface of the source is written to.
 std::unique_ptr<PlyMeshWriter> mesh_writer(const PointSource& source, const std::string& target,
                                            const ReconstructOptions& options) {
   std::vector<PointAttribute> attributes = source.attributes();
@@ -207,7 +207,7 @@ py::dict bound_reconstruct_file(PointSource* source, const std::string& target,
   return to_dict(report);
 }
 
-// A step that makes a file: of a source, of all counts, or of all cells.
+// Runs a step that writes a file from one source, from all counts, or from all cells.
 void bound_step(const std::string& step, PointSource* source, std::size_t number,
                 const StepFiles& files, ReconstructOptions options, const py::object& callback) {
   options.progress = to_progress(callback);
@@ -252,12 +252,12 @@ void bind_steps(py::module_& m) {
 
 void bind_reconstruct(py::module_& m) {
   bind_reconstruct_options(m);
-  // The arrays are to live as long as it does.
+  // Keeps the arrays alive.
   py::class_<ArraySource, PointSource>(m, "ArrayPoints")
       .def(py::init(&array_points), py::arg("positions"), py::arg("normals"), py::arg("weights"),
            py::arg("attributes"), py::arg("names"), py::arg("is_double"), py::keep_alive<1, 2>(),
            py::keep_alive<1, 3>(), py::keep_alive<1, 4>(), py::keep_alive<1, 5>());
-  // So are the sources.
+  // Keeps the sources alive.
   py::class_<JoinedPoints, PointSource>(m, "JoinedPoints")
       .def(py::init([](const py::tuple& sources, std::size_t rows_a_share) {
              return std::make_unique<JoinedPoints>(sources.cast<std::vector<PointSource*>>(),

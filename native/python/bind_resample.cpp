@@ -32,7 +32,7 @@ std::span<const TexturePlace> places_of(const Array<double>& coordinates) {
           static_cast<std::size_t>(coordinates.shape(0))};
 }
 
-// Of an array of shape (samples, 2, 2).
+// Matrices from an array of shape (samples, 2, 2).
 std::span<const TextureJacobian> jacobians_of(const Array<double>& jacobians) {
   return {reinterpret_cast<const TextureJacobian*>(jacobians.data()),
           static_cast<std::size_t>(jacobians.shape(0))};
@@ -146,7 +146,7 @@ Array<float> bound_sample_stochastic(const std::vector<py::array>& levels,
   return to_samples(std::move(values), coordinates, pyramid.channels);
 }
 
-// Level, column and row of each texel, and its weight.
+// Level, column, row and weight of each texel.
 using PickedArrays = std::pair<Array<std::int32_t>, Array<double>>;
 
 PickedArrays bound_pick_texels(const std::vector<py::array>& levels, const SamplingTable* table,

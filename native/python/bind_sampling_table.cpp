@@ -23,7 +23,7 @@ namespace prefilter::python {
 namespace {
 
 // Texels (subdomains, texels, 3), coefficients (subdomains, texels, terms); errors, trilinear
-// errors and gaps (subdomains), of the last none where the table is not certified.
+// errors and gaps (subdomains). Without a certificate there are no gaps.
 using SectionArrays =
     std::tuple<Array<int>, Array<double>, Array<double>, Array<double>, Array<double>>;
 

@@ -36,10 +36,10 @@ namespace {
 
 constexpr std::size_t kPointsAtOnce = 1 << 16;
 
-// All the values of one attribute.
+// The values of one attribute.
 struct AttributeValues {
   std::vector<float> floats;
-  std::vector<std::uint8_t> bytes;  // instead, where it is one of bytes
+  std::vector<std::uint8_t> bytes;  // used instead for an attribute of bytes
 };
 
 struct AllPoints {
@@ -48,10 +48,10 @@ struct AllPoints {
   std::vector<float> weights;
   std::vector<Vector3> viewpoints;
   std::vector<AttributeValues> attributes;
-  std::size_t stride = 1;  // of how many points in the source one is here
+  std::size_t stride = 1;  // number of source points per point
 };
 
-// Names in files may hold any bytes.
+// Names in files may contain any bytes.
 py::str to_str(const std::string& text) {
   PyObject* const decoded =
       PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "backslashreplace");
@@ -63,7 +63,7 @@ std::uint8_t to_byte(float value) {
   return value >= 0.0F ? static_cast<std::uint8_t>(std::lround(std::min(value, 255.0F))) : 0;
 }
 
-// How many points there are once all but every stride-th are left out.
+// Number of points if only every stride-th is kept.
 std::size_t thinned_count(std::size_t count, std::size_t stride) {
   return (count + stride - 1) / stride;
 }
@@ -85,7 +85,7 @@ void append(const std::vector<T>& more, std::vector<T>* all) {
   all->insert(all->end(), more.begin(), more.end());
 }
 
-// Keeps every stride-th of the groups of `width` values, from the group `first` on.
+// Keeps every stride-th group of `width` values, starting with group `first`.
 template <typename T>
 void thin(std::size_t first, std::size_t stride, std::size_t width, std::vector<T>* values) {
   std::size_t kept = 0;
@@ -129,7 +129,7 @@ void append_attributes(const PointBatch& batch, const std::vector<PointAttribute
 }
 
 // Reads the points 0, stride, 2 * stride and so on. The stride is the smallest that leaves at most
-// `most` of them, or a power of two where their number is not known.
+// `most` points, or a power of two if their number is unknown.
 AllPoints read_all(PointSource* source, std::size_t most, const Progress& progress) {
   const std::vector<PointAttribute>& attributes = source->attributes();
   AllPoints all;
@@ -191,7 +191,7 @@ py::tuple bound_read_points(PointSource* source, std::size_t most, const py::obj
                         viewpoints, attributes, all.stride);
 }
 
-// `File` is a path, or a file that was packed.
+// `File` is a path or a decompressed file.
 template <typename File>
 py::object bound_read_range_grid(const File& file, const py::object& callback) {
   const Progress progress = to_progress(callback);
@@ -296,15 +296,15 @@ Array<double> bound_mesh_normals(const py::array& points, const py::array& trian
 py::tuple bound_grid_normals(const Array<double>& points, const Array<std::int64_t>& grid,
                              const std::optional<Vector3>& viewpoint, const py::object& callback) {
   const Progress progress = to_progress(callback);
-  GridNormals found;
+  GridNormals normals;
   {
     const py::gil_scoped_release unlocked;
     const RangeGrid range_grid = {
         grid.shape(0), grid.shape(1), {grid.data(), grid.data() + grid.size()}};
-    found = grid_normals(rows_of(points), range_grid, viewpoint, progress);
+    normals = grid_normals(rows_of(points), range_grid, viewpoint, progress);
   }
-  return py::make_tuple(to_array<double>(std::move(found.normals), {points.shape(0), 3}),
-                        to_array<float>(std::move(found.weights), {points.shape(0)}));
+  return py::make_tuple(to_array<double>(std::move(normals.normals), {points.shape(0), 3}),
+                        to_array<float>(std::move(normals.weights), {points.shape(0)}));
 }
 
 std::unique_ptr<ChosenPoints> chosen_points(PointSource* source,
@@ -351,7 +351,7 @@ void bind_scan(py::module_& m) {
         if (!viewpoint) return py::none();
         return py::make_tuple((*viewpoint)[0], (*viewpoint)[1], (*viewpoint)[2]);
       });
-  // The sources are to live as long.
+  // Keeps the sources alive.
   py::class_<ChosenPoints, PointSource>(m, "ChosenPoints")
       .def(py::init(&chosen_points), py::arg("source"), py::arg("box"), py::arg("classes"),
            py::arg("returns"), py::arg("name"), py::keep_alive<1, 2>());
@@ -364,9 +364,9 @@ void bind_scan(py::module_& m) {
       "moved",
       [](const Array<double>& points, const Array<double>& matrix) {
         const RigidMotion motion = motion_of(matrix);
-        std::vector<Vector3> found;
-        for (const Vector3& point : rows_of(points)) found.push_back(moved(motion, point));
-        return to_array<double>(std::move(found), {points.shape(0), 3});
+        std::vector<Vector3> moved_points;
+        for (const Vector3& point : rows_of(points)) moved_points.push_back(moved(motion, point));
+        return to_array<double>(std::move(moved_points), {points.shape(0), 3});
       },
       py::arg("points"), py::arg("matrix"));
   m.attr("RETURNS") = names_of(kReturnsNames);

@@ -23,8 +23,8 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
-// The mesh with its caps, or as it was without any; and the numbers of open edges, of holes, and of
-// those left open.
+// The mesh with its caps, or unchanged without any; and the numbers of open edges, of holes, and of
+// holes left open.
 std::tuple<py::array, py::array, std::size_t, std::size_t, std::size_t> bound_close_holes(
     const py::array& positions, const py::array& triangles, const std::string& method,
     const py::object& callback, int threads) {
@@ -52,8 +52,8 @@ std::tuple<py::array, py::array, std::size_t, std::size_t, std::size_t> bound_cl
           caps.open_edges, caps.holes, caps.left_open};
 }
 
-// Nothing where the mesh stays as it is, or its positions, triangles, and where these came from;
-// and the report.
+// None if the mesh is unchanged, otherwise positions, triangles and their source triangles; and the
+// report.
 py::tuple bound_as_solid(const py::array& positions, const py::array& triangles,
                          SolidOptions options, const py::object& progress) {
   options.progress = to_progress(progress);
@@ -78,7 +78,7 @@ py::tuple bound_as_solid(const py::array& positions, const py::array& triangles,
                            report.filled_parts));
 }
 
-// The vertices of edges, and the edge of each corner.
+// The vertices of edges, and the edge at each corner.
 std::pair<Array<std::int32_t>, Array<std::int32_t>> bound_mesh_edges(const py::array& positions,
                                                                      const py::array& triangles,
                                                                      const py::object& callback,
@@ -104,19 +104,19 @@ bound_mesh_topology(const py::array& positions, const py::array& triangles, bool
                     const py::object& callback, int threads) {
   const Progress progress = to_progress(callback);
   const InputMesh mesh = mesh_of(positions, triangles);
-  MeshTopology found;
+  MeshTopology topology;
   {
     const py::gil_scoped_release unlocked;
-    found = mesh_topology(mesh, welds, progress, threads);
+    topology = mesh_topology(mesh, welds, progress, threads);
   }
-  const auto count = static_cast<py::ssize_t>(found.part_of.size());
-  const auto edges = static_cast<py::ssize_t>(found.border_edges.size());
-  return {found.parts,
-          found.cavities,
-          found.borders,
-          found.genus,
-          to_array<std::int32_t>(std::move(found.border_edges), {edges, py::ssize_t{2}}),
-          to_array<std::int32_t>(std::move(found.part_of), {count})};
+  const auto count = static_cast<py::ssize_t>(topology.part_of.size());
+  const auto edges = static_cast<py::ssize_t>(topology.border_edges.size());
+  return {topology.parts,
+          topology.cavities,
+          topology.borders,
+          topology.genus,
+          to_array<std::int32_t>(std::move(topology.border_edges), {edges, py::ssize_t{2}}),
+          to_array<std::int32_t>(std::move(topology.part_of), {count})};
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
-// The triangle, the weights of its corners, and the distance of each point.
+// Triangle, barycentric weights and distance for each point.
 using Found = std::tuple<Array<std::int64_t>, Array<double>, Array<double>>;
 
 Found point_arrays(const std::vector<SurfacePoint>& points) {
@@ -50,27 +50,27 @@ std::unique_ptr<NearestPoints> bound_tree(const py::array& positions, const py::
 Found bound_find(const NearestPoints& tree, const Array<double>& points, const py::object& callback,
                  int threads) {
   const Progress progress = to_progress(callback);
-  std::vector<SurfacePoint> found;
+  std::vector<SurfacePoint> nearest;
   {
     const py::gil_scoped_release unlocked;
-    found = tree.find(rows_of(points), progress, threads);
+    nearest = tree.find(rows_of(points), progress, threads);
   }
-  return point_arrays(found);
+  return point_arrays(nearest);
 }
 
 Found bound_nearest_points(const Array<double>& points, const py::array& positions,
                            const py::array& triangles, const py::object& callback, int threads) {
   const Progress progress = to_progress(callback);
   const InputMesh mesh = mesh_of(positions, triangles);
-  std::vector<SurfacePoint> found;
+  std::vector<SurfacePoint> nearest;
   {
     const py::gil_scoped_release unlocked;
-    found = nearest_points(rows_of(points), mesh, progress, threads);
+    nearest = nearest_points(rows_of(points), mesh, progress, threads);
   }
-  return point_arrays(found);
+  return point_arrays(nearest);
 }
 
-// The points, and which of them the corners have.
+// Distinct points, and the index of each corner's point.
 std::tuple<Found, Array<std::int32_t>> bound_corner_points(
     const py::array& positions, const py::array& triangles, const Array<std::int32_t>& origins,
     const py::array& source_positions, const py::array& source_triangles,
@@ -78,15 +78,15 @@ std::tuple<Found, Array<std::int32_t>> bound_corner_points(
   const Progress progress = to_progress(callback);
   const InputMesh surface = mesh_of(positions, triangles);
   const InputMesh source = mesh_of(source_positions, source_triangles);
-  CornerPoints found;
+  CornerPoints corner_points;
   {
     const py::gil_scoped_release unlocked;
-    found = find_corner_points(surface, values_of(origins), source, values_of(labels), progress,
-                               threads);
+    corner_points = find_corner_points(surface, values_of(origins), source, values_of(labels),
+                                       progress, threads);
   }
-  const auto count = static_cast<py::ssize_t>(found.corners.size());
-  return {point_arrays(found.points),
-          to_array<std::int32_t>(std::move(found.corners), {count, py::ssize_t{3}})};
+  const auto count = static_cast<py::ssize_t>(corner_points.corners.size());
+  return {point_arrays(corner_points.points),
+          to_array<std::int32_t>(std::move(corner_points.corners), {count, py::ssize_t{3}})};
 }
 
 std::tuple<std::pair<Vector3, Vector3>, double, double> bound_measure_mesh(

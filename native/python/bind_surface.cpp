@@ -34,7 +34,7 @@ std::size_t length(const Array<T>& array) {
   return static_cast<std::size_t>(array.shape(0));
 }
 
-// A copy of rows that a surface holds, each of which is an array or a struct of T alone.
+// A copy of a surface's rows, each an array or a struct of T only.
 template <typename T, typename Row>
 Array<T> rows(const std::vector<Row>& from, std::vector<py::ssize_t> row_shape) {
   row_shape.insert(row_shape.begin(), static_cast<py::ssize_t>(from.size()));
@@ -111,7 +111,7 @@ std::optional<Surface> bound_udim_tile(const Surface& surface, int number) {
   return tile;
 }
 
-// What PolygonArrays points to.
+// The polygons of a PolygonArrays.
 struct PolygonMesh {
   Array<double> positions;
   Array<std::int64_t> face_sizes;

@@ -83,7 +83,7 @@ Array<std::int8_t> bound_classify(const Octree& octree, const Array<double>& poi
   return to_array<std::int8_t>(std::move(sides), {points.shape(0)});
 }
 
-// Level by level, the blocks' values and their bits of split octants.
+// For each level, the blocks' values and the bit masks of split octants.
 std::vector<std::pair<Array<float>, Array<std::uint8_t>>> bound_levels(const Octree& octree) {
   std::vector<std::pair<Array<float>, Array<std::uint8_t>>> levels;
   for (const TreeLevel& level : octree.cells.levels) {
@@ -111,23 +111,23 @@ Octree bound_make_octree(const std::vector<std::pair<Array<float>, Array<std::ui
   return make_octree(std::move(levels), root, to_box(bounds), depth);
 }
 
-// The numbers of triangles, what they are thick and what they became, and their areas.
+// Triangle indices, original and resulting thickness, and areas.
 std::tuple<Array<std::int64_t>, Array<double>, Array<double>, Array<double>> bound_thin(
     const Octree& octree, bool only_walls) {
   const std::vector<ThinTriangle>& thin = only_walls ? octree.thin_walls : octree.thin;
   const auto count = static_cast<py::ssize_t>(thin.size());
   Array<std::int64_t> triangles(count);
   Array<double> thickness(count);
-  Array<double> made(count);
+  Array<double> thickened(count);
   Array<double> areas(count);
   for (py::ssize_t i = 0; i < count; ++i) {
-    const ThinTriangle& one = thin[static_cast<std::size_t>(i)];
-    triangles.mutable_at(i) = one.triangle;
-    thickness.mutable_at(i) = one.thickness;
-    made.mutable_at(i) = one.made;
-    areas.mutable_at(i) = one.area;
+    const ThinTriangle& triangle = thin[static_cast<std::size_t>(i)];
+    triangles.mutable_at(i) = triangle.triangle;
+    thickness.mutable_at(i) = triangle.thickness;
+    thickened.mutable_at(i) = triangle.made;
+    areas.mutable_at(i) = triangle.area;
   }
-  return {std::move(triangles), std::move(thickness), std::move(made), std::move(areas)};
+  return {std::move(triangles), std::move(thickness), std::move(thickened), std::move(areas)};
 }
 
 std::size_t byte_count(const Octree& octree) {

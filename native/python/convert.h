@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What every binding needs: arrays in and out without a copy, and progress.
+// Conversions shared by all bindings: arrays without copies, and progress.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -23,14 +23,14 @@
 
 namespace prefilter::python {
 
-/// The Python package passes arrays in just this form.
+/// The form in which the Python package passes arrays.
 template <typename T>
 using Array = pybind11::array_t<T, pybind11::array::c_style>;
 
 /// A view of an array of shape (height, width, channels).
 ImageView view_of(const Array<float>& array);
 
-/// The same of bytes, which stand for these values.
+/// A view of an array of bytes that stand for these values.
 inline TexelSource bytes_of(const Array<std::uint8_t>& array, const ByteValues* values) {
   return {array.data(), static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)),
           static_cast<int>(array.shape(2)), values};
@@ -42,7 +42,7 @@ std::vector<ImageView> views_of(const std::vector<Array<float>>& arrays);
 Array<float> to_array(Image image);
 std::vector<Array<float>> to_arrays(std::vector<Image> images);
 
-/// The names in a table of an enumeration's.
+/// The names in an enumeration's table.
 template <typename Value, std::size_t kCount>
 pybind11::tuple names_of(const Named<Value> (&table)[kCount]) {
   pybind11::tuple names(kCount);
@@ -57,17 +57,17 @@ std::span<const std::array<T, 3>> rows_of(const Array<T>& array) {
           static_cast<std::size_t>(array.shape(0))};
 }
 
-/// The values of an array of one axis.
+/// The values of a one-dimensional array.
 template <typename T>
 std::span<const T> values_of(const Array<T>& array) {
   return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
-/// A mesh of C-contiguous arrays: (vertices, 3) of float32 or float64, and (triangles, 3) of int32
-/// or int64. It holds no copy: the arrays have to live as long. Needs the interpreter's lock.
+/// A mesh over C-contiguous arrays: (vertices, 3) of float32 or float64, and (triangles, 3) of
+/// int32 or int64. The arrays are not copied and must outlive it. Requires the interpreter's lock.
 InputMesh mesh_of(const pybind11::array& positions, const pybind11::array& triangles);
 
-/// The motion of a matrix of shape (4, 4) or (3, 4).
+/// The motion given by a matrix of shape (4, 4) or (3, 4).
 inline RigidMotion motion_of(const Array<double>& matrix) {
   RigidMotion motion;
   for (pybind11::ssize_t r = 0; r < 3; ++r) {
@@ -78,7 +78,7 @@ inline RigidMotion motion_of(const Array<double>& matrix) {
   return motion;
 }
 
-/// An array of this shape that owns the values, rows of T or T themselves.
+/// An array of this shape that owns the values: rows of T, or T themselves.
 template <typename T, typename Value>
 Array<T> to_array(std::vector<Value> values, std::vector<pybind11::ssize_t> shape) {
   auto owner = std::make_unique<std::vector<Value>>(std::move(values));
@@ -92,10 +92,10 @@ Array<T> to_array(std::vector<Value> values, std::vector<pybind11::ssize_t> shap
 using WrapNames = std::pair<std::string, std::string>;
 WrapModes wrap_modes(const WrapNames& names);
 
-/// Whether the interpreter is going away: it then ends any thread that asks for its lock.
+/// Whether the interpreter is shutting down, and would end any thread that requests its lock.
 bool is_finalizing();
 
-/// Calls a Python callable, or for None nothing; in both cases lets a keyboard interrupt through.
+/// Reports to a Python callable, or to nothing for None. Raises keyboard interrupts in both cases.
 Progress to_progress(const pybind11::object& callback);
 
 }  // namespace prefilter::python

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The classes of the native module, passed to C++ only once their __init__ has run.
+// Passes instances of the module's classes to C++ only after their __init__ has run.
 //
-// Python can make an object without that (Class.__new__(Class)); pybind11 would hand out memory
-// that nothing has set. Include this in every file that binds functions of these classes.
+// Python can create an object without it (Class.__new__(Class)), for which pybind11 would pass
+// uninitialized memory. Every file that binds functions of these classes must include this header.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -106,7 +106,7 @@ Progress to_progress(const py::object& callback) {
 }  // namespace prefilter::python
 
 namespace {
-// Names of files in messages may hold any bytes.
+// File names in messages may contain any bytes.
 void set_error(PyObject* type, const char* message) {
   const auto length = static_cast<Py_ssize_t>(std::strlen(message));
   PyObject* const text = PyUnicode_DecodeUTF8(message, length, "backslashreplace");
@@ -132,7 +132,7 @@ PYBIND11_MODULE(_native, m) {
   m.def("random_name", &prefilter::random_name,
         "Returns what a file may be called until it is put in place.");
   m.attr("MACHINE_DIGITS") = prefilter::kMachineDigits;
-  // Never destroyed: at exit there may be no interpreter left to destroy it with.
+  // Never destroyed: at exit the interpreter may be gone already.
   static auto* const cancelled = new py::exception<Error>(m, "Cancelled");
   cancelled->attr("__module__") = "prefilter";
   py::register_exception_translator([](std::exception_ptr pointer) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// C++'s allocation of this module's own, hidden by -fvisibility-global-new-delete: zig's linker has
-// no list of what a module for macOS exports, and those of its C++ library would be seen from
-// outside.
+// This module's own operators new and delete, hidden by -fvisibility-global-new-delete. Zig's
+// linker cannot restrict the symbols that a module for macOS exports, so the operators of its C++
+// library would be visible from outside.
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <new>
 
 namespace {
-// No handler is asked for more memory: nothing in the module sets one.
+// Calls no new-handler, as nothing in the module sets one.
 void* allocated(std::size_t size) noexcept { return std::malloc(std::max<std::size_t>(size, 1)); }
 
 void* allocated(std::size_t size, std::align_val_t alignment) noexcept {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Levels in, of whichever type, without a copy.
+// Views of image pyramids of either type, without copies.
 #pragma once
 
 #include <utility>
@@ -11,8 +11,8 @@
 
 namespace prefilter::python {
 
-/// A view of arrays of shape (height, width, channels), C-contiguous, all of float32 or all of
-/// uint8, and all of as many channels.
+/// Views of C-contiguous arrays of shape (height, width, channels), all of float32 or all of uint8,
+/// with equal numbers of channels.
 inline Pyramid pyramid_of(const std::vector<pybind11::array>& levels) {
   std::vector<PyramidLevel> views;
   for (const pybind11::array& level : levels) {

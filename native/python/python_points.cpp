@@ -18,18 +18,18 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
-// Positions, normals, weights, viewpoints and attributes of some points.
+// Positions, normals, weights, viewpoints and attributes of a chunk of points.
 using Chunk = std::tuple<Array<double>, std::optional<Array<float>>, std::optional<Array<float>>,
                          std::optional<Array<double>>, Array<float>>;
 
-// What needs the interpreter's lock to be changed or to go.
-struct Held {
+// Objects that may only be changed or released with the interpreter's lock.
+struct LockedObjects {
   py::object reader;
   py::object iterator;
   std::optional<Chunk> chunk;
 };
 
-// Throws where an array is not of the size that the reader has promised.
+// Throws an error if an array has another size than the reader announced.
 template <typename T>
 const T* checked_rows(const Array<T>& array, std::size_t count, std::size_t width,
                       std::size_t first) {
@@ -50,16 +50,16 @@ class PythonPoints final : public PointSource {
          reader.attr("attributes").cast<std::vector<std::pair<std::string, bool>>>()) {
       attributes_.push_back({std::move(name), is_byte});
     }
-    held_ = std::make_unique<Held>(Held{reader, py::object(), std::nullopt});
+    objects_ = std::make_unique<LockedObjects>(LockedObjects{reader, py::object(), std::nullopt});
   }
 
   ~PythonPoints() override {
     if (is_finalizing()) {
-      (void)held_.release();
+      (void)objects_.release();
       return;
     }
     const py::gil_scoped_acquire locked;
-    held_.reset();
+    objects_.reset();
   }
 
   std::optional<std::size_t> count() const override {
@@ -68,7 +68,7 @@ class PythonPoints final : public PointSource {
   bool has_normals() const override { return has_normals_; }
   const std::vector<PointAttribute>& attributes() const override { return attributes_; }
   std::optional<Vector3> viewpoint() const override { return viewpoint_; }
-  // These formats keep coordinates as scaled integers or doubles.
+  // These formats store coordinates as scaled integers or doubles.
   bool is_double() const override { return true; }
   std::optional<std::size_t> rows() const override { return can_seek_ ? count_ : std::nullopt; }
   void choose_rows(std::size_t begin, std::size_t end) override {
@@ -78,23 +78,23 @@ class PythonPoints final : public PointSource {
 
   void rewind() override {
     const py::gil_scoped_acquire locked;
-    held_->iterator = py::object();
-    held_->chunk.reset();
+    objects_->iterator = py::object();
+    objects_->chunk.reset();
   }
 
   bool read(std::size_t most, PointBatch* batch) override {
     const py::gil_scoped_acquire locked;
     batch->clear();
-    if (!held_->iterator) held_->iterator = chunks();
-    while (!held_->chunk || done_ == size_) {
-      PyObject* const next = PyIter_Next(held_->iterator.ptr());
+    if (!objects_->iterator) objects_->iterator = chunks();
+    while (!objects_->chunk || done_ == size_) {
+      PyObject* const next = PyIter_Next(objects_->iterator.ptr());
       if (next == nullptr) {
         if (PyErr_Occurred() != nullptr) throw py::error_already_set();
-        held_->chunk.reset();
+        objects_->chunk.reset();
         return false;
       }
-      held_->chunk = py::reinterpret_steal<py::object>(next).cast<Chunk>();
-      size_ = static_cast<std::size_t>(std::get<0>(*held_->chunk).shape(0));
+      objects_->chunk = py::reinterpret_steal<py::object>(next).cast<Chunk>();
+      size_ = static_cast<std::size_t>(std::get<0>(*objects_->chunk).shape(0));
       done_ = 0;
     }
     take(std::min(most, size_ - done_), batch);
@@ -103,7 +103,7 @@ class PythonPoints final : public PointSource {
 
  private:
   py::object chunks() const {
-    const py::object all = held_->reader.attr("chunks");
+    const py::object all = objects_->reader.attr("chunks");
     return chosen_ ? all(chosen_->first, chosen_->second) : all();
   }
 
@@ -116,7 +116,7 @@ class PythonPoints final : public PointSource {
   }
 
   void take(std::size_t count, PointBatch* batch) {
-    const auto& [positions, normals, weights, viewpoints, attributes] = *held_->chunk;
+    const auto& [positions, normals, weights, viewpoints, attributes] = *objects_->chunk;
     append(positions, count, &batch->positions);
     if (has_normals_ && normals) append(*normals, count, &batch->normals);
     if (viewpoints) append(*viewpoints, count, &batch->viewpoints);
@@ -129,7 +129,7 @@ class PythonPoints final : public PointSource {
     done_ += count;
   }
 
-  std::unique_ptr<Held> held_;
+  std::unique_ptr<LockedObjects> objects_;
   std::optional<std::size_t> count_;
   std::optional<Vector3> viewpoint_;
   std::vector<PointAttribute> attributes_;
@@ -137,7 +137,7 @@ class PythonPoints final : public PointSource {
   bool can_seek_;
   std::optional<std::pair<std::size_t, std::size_t>> chosen_;  // rows
   std::size_t size_ = 0;                                       // of the chunk
-  std::size_t done_ = 0;                                       // points of it
+  std::size_t done_ = 0;                                       // points read from the chunk
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Points that Python code reads, for formats whose libraries are Python modules.
+// Points read by Python code, for formats whose libraries are Python modules.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -11,7 +11,7 @@
 
 namespace prefilter::python {
 
-/// A source of what a `PointReader`, of the package's module of that name, reads.
+/// A source of the points that a Python `PointReader` reads.
 std::unique_ptr<PointSource> make_python_points(const pybind11::object& reader);
 
 }  // namespace prefilter::python

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Triangles wait in a temporary file, as PLY requires all vertices first. The header has room for
+// the final counts, in a comment padded with blanks.
 #include "prefilter/points/ply_mesh_writer.h"
 
 #include <algorithm>
@@ -22,9 +24,9 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::size_t kBufferSize = std::size_t{1} << 20;
-constexpr std::size_t kMostVertices = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kMaxVertices = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kTriangleSize = 1 + 3 * sizeof(std::uint32_t);
-// More digits than any count has.
+// Digits of the largest count.
 constexpr std::size_t kCountDigits = 20;
 
 template <typename T>
@@ -33,7 +35,7 @@ std::byte* put(T value, std::byte* to) {
   return to + sizeof value;
 }
 
-// Makes names of properties of them: words, and each of them once.
+// Turns attribute names into valid and distinct PLY property names.
 std::vector<PointAttribute> as_properties(std::vector<PointAttribute> attributes) {
   std::set<std::string> taken = {"x", "y", "z"};
   for (PointAttribute& each : attributes) {
@@ -55,7 +57,7 @@ std::span<const std::byte> bytes_of(const std::string& text) {
 
 }  // namespace
 
-/// The file beside its target and the triangles' temporary one.
+/// The staged target file and the temporary file of triangles.
 class PlyMeshWriter::Files {
  public:
   Files(const std::string& path, std::vector<PointAttribute> attributes, bool is_double);
@@ -77,8 +79,8 @@ class PlyMeshWriter::Files {
   bool is_double_;
   std::size_t vertex_count_ = 0;
   std::size_t triangle_count_ = 0;
-  std::size_t header_size_;     // follows from what stands above it
-  std::uint64_t vertices_end_;  // in the file
+  std::size_t header_size_;     // initialized from the members above
+  std::uint64_t vertices_end_;  // position in the file
   // Not written yet.
   std::vector<std::byte> vertex_buffer_;
   std::vector<std::byte> triangle_buffer_;
@@ -93,7 +95,7 @@ PlyMeshWriter::Files::Files(const std::string& path, std::vector<PointAttribute>
       header_size_(header(0).size() + 2 * kCountDigits),
       vertices_end_(header_size_) {}
 
-// Of that size where it can be: a comment fills the room that is left for longer counts.
+// The header, padded to `size` bytes by blanks at the end of its comment if it is shorter.
 std::string PlyMeshWriter::Files::header(std::size_t size) const {
   const char* const type = is_double_ ? "double" : "float";
   std::string rest = "element vertex " + std::to_string(vertex_count_) + "\n";
@@ -116,7 +118,7 @@ void PlyMeshWriter::Files::add_vertices(std::span<const Vector3> positions,
   const std::size_t count = positions.size();
   const std::size_t width = attributes_.size();
   assert(attributes.size() == count * width);
-  if (count > kMostVertices - vertex_count_) {
+  if (count > kMaxVertices - vertex_count_) {
     throw_invalid(staged_.file().name() +
                   ": a mesh of more than 4294967295 vertices; PLY files cannot "
                   "number more");

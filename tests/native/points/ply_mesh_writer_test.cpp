@@ -42,7 +42,7 @@ T value_at(const std::string& bytes, std::size_t offset) {
   return value;
 }
 
-// The header without the comment, and all that follows it.
+// The header without its comment, and the data.
 std::pair<std::string, std::string> header_and_body(const std::string& path) {
   const std::string all = contents(path);
   const std::size_t end = all.find("end_header\n") + 11;
@@ -54,7 +54,7 @@ std::pair<std::string, std::string> header_and_body(const std::string& path) {
   return {header, all.substr(end)};
 }
 
-TEST(PlyMeshWriter, WritesWhatItIsGiven) {
+TEST(PlyMeshWriter, RoundTripsAMesh) {
   const TestFolder folder;
   const std::string path = folder.path("mesh.ply");
   {
@@ -90,7 +90,7 @@ TEST(PlyMeshWriter, WritesWhatItIsGiven) {
   EXPECT_EQ(value_at<std::int32_t>(body, 54 + 13 + 1), 2);
 }
 
-TEST(PlyMeshWriter, WritesAMeshOfNothing) {
+TEST(PlyMeshWriter, WritesAnEmptyMesh) {
   const TestFolder folder;
   PlyMeshWriter writer(folder.path("mesh.ply"), {}, true);
   writer.finish(Progress());
@@ -99,7 +99,7 @@ TEST(PlyMeshWriter, WritesAMeshOfNothing) {
   EXPECT_EQ(body, "");
 }
 
-// Room for two counts of 20 digits is kept, whatever the memory held that the writer gets.
+// The header has room for two counts of 20 digits, whatever its memory held before.
 TEST(PlyMeshWriter, HeadersHaveTheRoomForCounts) {
   const TestFolder folder;
   const std::string path = folder.path("mesh.ply");
@@ -161,7 +161,7 @@ TEST(PlyMeshWriter, WritesInPieces) {
       ASSERT_EQ(value_at<std::uint32_t>(body, kVertices * 25 + 13 * i + 1 + 4 * k), i + k);
     }
   }
-  // The vertices of a mesh are points, too.
+  // The vertices of a mesh can be read as points.
   const std::unique_ptr<PointSource> points = open_points(path);
   PointBatch batch;
   ASSERT_TRUE(points->read(kVertices + 1, &batch));
@@ -170,7 +170,7 @@ TEST(PlyMeshWriter, WritesInPieces) {
   EXPECT_TRUE(points->is_double());
 }
 
-TEST(PlyMeshWriter, LeavesTheTargetUntilItIsDone) {
+TEST(PlyMeshWriter, LeavesTheTargetUntilFinished) {
   const TestFolder folder;
   const std::string path = folder.path("mesh.ply");
   write_text(path, "before");
@@ -185,7 +185,7 @@ TEST(PlyMeshWriter, LeavesTheTargetUntilItIsDone) {
 }
 
 #ifndef _WIN32
-TEST(PlyMeshWriter, ReplacesWhatALinkLeadsToAndKeepsItsMode) {
+TEST(PlyMeshWriter, ReplacesTheTargetOfALinkAndKeepsItsMode) {
   const TestFolder folder;
   write_text(folder.path("real.ply"), "before");
   ::chmod(folder.path("real.ply").c_str(), 0640);
@@ -201,7 +201,7 @@ TEST(PlyMeshWriter, ReplacesWhatALinkLeadsToAndKeepsItsMode) {
 }
 #endif
 
-TEST(PlyMeshWriter, TellsOfTargetsThatCannotBe) {
+TEST(PlyMeshWriter, RefusesInvalidTargets) {
   const TestFolder folder;
   const auto message = [](const std::string& path) {
     try {
@@ -223,7 +223,7 @@ TEST(PlyMeshWriter, TellsOfTargetsThatCannotBe) {
 }
 
 #ifndef _WIN32
-TEST(PlyMeshWriter, TellsOfAFullDiskAndLeavesNothing) {
+TEST(PlyMeshWriter, ReportsAFullDiskAndLeavesNothing) {
   const TestFolder folder;
   const std::string path = folder.path("mesh.ply");
   write_text(path, "before");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A mesh kept in arrays.
+// A mesh sink in memory.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace prefilter {
 
-/// Keeps a mesh in memory.
+/// Collects a mesh in arrays.
 class ArraySink : public MeshSink {
  public:
   void add_vertices(std::vector<Vector3> positions, std::vector<float> attributes) override {
@@ -41,7 +41,7 @@ class ArraySink : public MeshSink {
   std::vector<std::array<std::int32_t, 3>> take_triangles() { return joined(&triangles_); }
 
  private:
-  // Each piece goes as soon as it is copied: nothing is in memory twice.
+  // Frees each piece as soon as it is copied, so that little is in memory twice.
   template <typename T>
   static std::vector<T> joined(std::vector<std::vector<T>>* pieces) {
     std::size_t count = 0;

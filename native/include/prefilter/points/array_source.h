@@ -16,14 +16,14 @@
 
 namespace prefilter {
 
-/// Rows of three floats or doubles, as someone else holds them.
+/// Rows of three floats or doubles, owned by the caller.
 using VectorRows =
     std::variant<std::span<const std::array<float, 3>>, std::span<const std::array<double, 3>>>;
 
-/// Points from arrays, which must outlive it.
+/// A point source over arrays, which must outlive it.
 class ArraySource : public PointSource {
  public:
-  /// `weights` may be empty; `attributes` has a row for each point. `is_double`: see PointSource.
+  /// `weights` may be empty; `attributes` has one row per point. See PointSource for `is_double`.
   ArraySource(VectorRows positions, VectorRows normals, std::span<const float> weights,
               std::span<const float> attributes, std::vector<PointAttribute> names,
               bool is_double = false)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Some points of a source: of a box, of some classes, of some returns.
+// Selects points of a source by a box, classes, and returns.
 #pragma once
 
 #include <bitset>
@@ -15,7 +15,8 @@
 
 namespace prefilter {
 
-/// Of the echoes of one pulse of a scanner, which may pass leaves on its way to the ground.
+/// Which of the returns (echoes) of a laser pulse to keep. A pulse may pass leaves on its way to
+/// the ground.
 enum class Returns { kAll, kFirst, kLast, kOnly };
 
 inline constexpr Named<Returns> kReturnsNames[] = {
@@ -25,21 +26,21 @@ inline constexpr Named<Returns> kReturnsNames[] = {
     {"only", Returns::kOnly},
 };
 
-/// What points have to be. A number of 0, which files have for points without returns, counts as 1.
+/// Selection of points. A return number of 0, used for points without returns, counts as 1.
 struct PointChoice {
   static constexpr std::size_t kClasses = 256;
 
-  std::optional<Box> box;  // its sides belong to it
+  std::optional<Box> box;  // closed: includes its boundary
   std::optional<std::bitset<kClasses>> classes;
   Returns returns = Returns::kAll;
 };
 
-/// The points of a source that a choice has.
+/// The points of a source that match a choice.
 class ChosenPoints final : public ChangedPoints {
  public:
-  /// `name` is what messages call the source. Throws Error where a choice asks for classes or
-  /// returns, and the source has no "classification", or no "return_number" (and, but for the
-  /// first, "number_of_returns").
+  /// `name` is the source's name in messages. Throws Error if the choice needs classes or returns,
+  /// and the source has no attribute "classification", "return_number" or, except for kFirst,
+  /// "number_of_returns".
   ChosenPoints(PointSource* source, const PointChoice& choice, const std::string& name);
 
   std::optional<std::size_t> count() const override { return std::nullopt; }
@@ -49,9 +50,9 @@ class ChosenPoints final : public ChangedPoints {
   bool is_chosen(const PointBatch& batch, std::size_t point) const;
 
   PointChoice choice_;
-  std::size_t class_ = 0;  // places of attributes
-  std::size_t number_ = 0;
-  std::size_t of_ = 0;
+  std::size_t class_attribute_ = 0;  // attribute indices
+  std::size_t return_number_attribute_ = 0;
+  std::size_t number_of_returns_attribute_ = 0;
 };
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Normals that are known but for their direction.
+// Orients normals of unknown sign.
 #pragma once
 
 #include <span>
@@ -11,10 +11,10 @@
 
 namespace prefilter {
 
-/// The normals, 1 long, some reversed, so that those of near points agree, and those of each
-/// connected part point outward as a whole, as those of estimate_normals without a viewpoint. Zero
-/// for a normal or a point that is not finite, and for normals of length 0. The same for any number
-/// of threads. Throws Error for no points, more than 2^31 - 1, or another number of normals;
+/// Returns unit normals, some reversed, so that neighbors agree and each connected part points
+/// outward on the whole, as in estimate_normals without a viewpoint. Zero for normals of length 0,
+/// and for normals and points that are not finite. The result is the same for any number of
+/// threads. Throws Error for no points, more than 2^31 - 1, or a different number of normals;
 /// Error(kCancelled).
 std::vector<Vector3> directed_normals(std::span<const Vector3> points,
                                       std::span<const Vector3> normals, const Progress& progress,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Normals of points whose triangles, or places in a scanner's grid, are known.
+// Normals of points from their triangles or from a scanner's grid.
 #pragma once
 
 #include <cstdint>
@@ -14,25 +14,25 @@
 
 namespace prefilter {
 
-/// The normal of each vertex, 1 long: the mean of those of its triangles, by area. Zero for a
-/// vertex without any, or whose triangles have no area or positions that are not finite. Throws
-/// Error for an index that names no vertex; Error(kCancelled).
+/// Unit normal of each vertex: the area-weighted mean of its triangles' normals. Zero for a vertex
+/// without triangles, or whose triangles have no area or positions that are not finite. Throws
+/// Error for an invalid vertex index; Error(kCancelled).
 std::vector<Vector3> mesh_normals(const InputMesh& mesh, const Progress& progress);
 
-/// What a scanner's grid tells of its points.
+/// Normals and weights derived from a scanner's grid.
 struct GridNormals {
   std::vector<Vector3> normals;
-  /// How sure points are, 0 to 1: the cosine of the angle at which the surface was seen, and less
-  /// within six places of where it ends in the grid, down to a seventh (Curless and Levoy 1996).
+  /// Confidence, 0 to 1: the cosine of the viewing angle, reduced within six grid positions of the
+  /// end of the surface, down to a seventh (Curless and Levoy 1996).
   std::vector<float> weights;
 };
 
-/// Normals by the triangles between neighbors in the grid. Triangles with an edge over four times
-/// as long as usual join a surface to what is behind it, and are left out, so points at the ends of
-/// the surface may have none, and weigh nothing. All point to the side that more of the surface
-/// shows to the viewpoint, or without one to where z is larger, as the scanners of Stanford's range
-/// scans look along -z. Throws Error for an index that names no point, a grid of another size than
-/// it says, a viewpoint that is not finite; Error(kCancelled).
+/// Normals from the triangles between neighbors in the grid. Triangles with an edge over four times
+/// the median length connect a surface to the background and are left out; points at the ends of
+/// the surface may then have no normal, and weight 0. All normals are oriented so that most of the
+/// surface faces the viewpoint or, without one, +z, as the scanners of Stanford's range scans look
+/// along -z. Throws Error for an invalid point index, a grid whose size does not match its rows and
+/// columns, or a viewpoint that is not finite; Error(kCancelled).
 GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
                          const std::optional<Vector3>& viewpoint, const Progress& progress);
 

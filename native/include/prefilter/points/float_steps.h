@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Coordinates that were rounded to single precision, far from the origin.
+// Detects coordinates rounded to single precision far from the origin.
 #pragma once
 
 #include <array>
@@ -10,27 +10,27 @@
 
 namespace prefilter {
 
-/// Finds out whether coordinates have gone through single precision, whose numbers are a step apart
-/// that grows with their distance from 0: 1/2 for a northing of five million. They have, if all are
-/// such numbers, and one in eight or more are no number of half that precision, as coordinates with
-/// few digits would be.
+/// Detects whether coordinates have been stored in single precision, whose spacing grows with the
+/// distance from 0: 1/2 for a northing of five million. This is assumed if all coordinates are such
+/// numbers, and at least one in eight is an odd multiple of the spacing; coordinates with few
+/// digits would not be.
 class FloatSteps {
  public:
   void add(const Vector3& point);
   void add(const FloatSteps& other);
 
-  /// What was found along each axis.
+  /// Statistics along an axis.
   struct Axis {
     std::size_t count = 0;
-    std::size_t odd = 0;   // multiples of the step, and not of twice that
-    bool is_wide = false;  // one is between numbers of single precision
+    std::size_t odd = 0;   // odd multiples of the spacing
+    bool is_wide = false;  // a coordinate is not exact in single precision
     double largest = 0.0;
   };
   FloatSteps() = default;
   explicit FloatSteps(const std::array<Axis, 3>& axes) : axes_(axes) {}
   const std::array<Axis, 3>& axes() const { return axes_; }
 
-  /// The largest step along an axis whose coordinates were rounded; 0 where none were.
+  /// The largest spacing along an axis whose coordinates were rounded; 0 if none were.
   double step() const;
 
  private:

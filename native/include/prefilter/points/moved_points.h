@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Points of a source at another place.
+// Applies a rigid motion to the points of a source.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace prefilter {
 
-/// The points of a source after a motion, with their normals and viewpoints.
+/// The points, normals and viewpoints of a source after a rigid motion.
 class MovedPoints final : public ChangedPoints {
  public:
   MovedPoints(PointSource* source, const RigidMotion& motion)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Files of points, whatever their format.
+// Opens point files of any supported format.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,15 @@
 
 namespace prefilter {
 
-/// Opens a file as its ending says: .ply, also of Gaussian splats; .pcd; .obj; .ptx; .pts, .xyz,
-/// .xyzn, .asc, .txt or .csv, which are lines of numbers. Throws Error(kFile) where it cannot be
-/// opened, else Error where the ending is another or the file is not what it says.
+/// Opens a file by its extension: .ply (also Gaussian splats), .pcd, .obj, .ptx, or lines of
+/// numbers in .pts, .xyz, .xyzn, .asc, .txt and .csv. Throws Error(kFile) if it cannot be opened,
+/// and Error for another extension or a file that does not match its extension.
 std::unique_ptr<PointSource> open_points(const std::string& path);
 
-/// The same for a PLY file that was packed.
+/// Opens a PLY file that was compressed.
 std::unique_ptr<PointSource> open_ply(const UnpackedFile& file);
 
-/// The endings that open_points knows, in lower case.
+/// The extensions that open_points supports, in lower case.
 std::vector<std::string> point_extensions();
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Points that lie by themselves.
+// Detects isolated points.
 #pragma once
 
 #include <span>
@@ -11,14 +11,14 @@
 
 namespace prefilter {
 
-/// Which points are outliers: those whose mean distance to the `neighbours` positions nearest to
-/// them is more than `factor` times the median of those of these neighbors. What a cloud has
-/// elsewhere says nothing, so parts that were scanned sparsely stay.
+/// Marks as outliers the points whose mean distance to their `neighbours` nearest positions exceeds
+/// `factor` times the median of that distance over these neighbors. The test is local, so sparsely
+/// scanned parts are kept.
 ///
-/// Copies of a point count once, and are what it is. Points that hold a value that is not finite,
-/// or above 1e150, are outliers; of fewer than three other positions none is. The same for any
-/// number of threads. Throws Error for more than 2^31 - 1 points, neighbours not from 3 to 1000, or
-/// a factor that is not above 1 and finite; Error(kCancelled).
+/// Copies of a point count once, and share its result. Points with a value that is not finite, or
+/// above 1e150, are outliers; with fewer than three other positions no point is. The result is the
+/// same for any number of threads. Throws Error for more than 2^31 - 1 points, neighbours outside 3
+/// to 1000, or a factor that is not above 1 and finite; Error(kCancelled).
 std::vector<bool> find_outliers(std::span<const Vector3> points, int neighbours, double factor,
                                 const Progress& progress, int threads);
 

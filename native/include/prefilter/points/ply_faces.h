@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Triangles and range grids of PLY files: how their points are connected.
+// Polygons and range grids of PLY files.
 #pragma once
 
 #include <array>
@@ -16,29 +16,29 @@
 
 namespace prefilter {
 
-/// The element "range_grid" of a PLY file, with the size that lines "obj_info num_rows" and
-/// "num_cols" tell; none where it has none. Throws Error for what is no PLY file or is damaged,
-/// and for an index that names no point.
+/// The element "range_grid" of a PLY file, with the size from the lines "obj_info num_rows" and
+/// "num_cols"; nothing if there is none. Throws Error for files that are not PLY or are damaged,
+/// and for an invalid point index.
 std::optional<RangeGrid> read_range_grid(const std::string& path, const Progress& progress);
 std::optional<RangeGrid> read_range_grid(const UnpackedFile& file, const Progress& progress);
 
 /// The polygons of a PLY file.
 struct PlyMesh {
   std::vector<Vector3> positions;
-  /// The number of corners of each polygon, and the vertices of all corners.
+  /// Number of corners of each polygon, and the vertex index of each corner.
   std::vector<std::int64_t> sizes;
   std::vector<std::int64_t> corners;
-  /// The UVs of all corners; empty for a file without. They are those of a list "texcoord" of
-  /// faces, else those of vertices, called s and t, u and v, or texture_u and texture_v.
+  /// UVs of all corners, empty if there are none: from a list "texcoord" of faces, otherwise from
+  /// vertex properties s and t, u and v, or texture_u and texture_v.
   std::vector<std::array<double, 2>> uvs;
 };
 
-/// The elements "vertex" and "face" of a PLY file; without polygons where it has no faces.
-/// Throws Error likewise.
+/// Reads the elements "vertex" and "face" of a PLY file; without faces there are no polygons.
+/// Throws Error as read_range_grid does.
 PlyMesh read_ply_mesh(const std::string& path, const Progress& progress);
 
-/// The element "face" of a PLY file as triangles, polygons by `triangulate_polygons`; none where it
-/// has none. Throws Error likewise.
+/// Reads the element "face" of a PLY file as triangles, by `triangulate_polygons`; empty if there
+/// is none. Throws Error as read_range_grid does.
 std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path,
                                                     const Progress& progress);
 std::vector<std::array<std::int64_t, 3>> read_faces(const UnpackedFile& file,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Meshes larger than memory, written to PLY files.
+// Writes meshes larger than memory to PLY files.
 #pragma once
 
 #include <array>
@@ -16,25 +16,26 @@
 
 namespace prefilter {
 
-/// Writes binary little-endian PLY. Vertices go to the file as they come; triangles, which follow
-/// them there, to a temporary file beside it until the end. Attributes are properties of their
-/// names, "uchar" or "float"; characters that a name cannot have there become "_". All functions
-/// throw Error(kFile) where the system refuses, as a full disk does; the message names the file
-/// and the bytes. Without finish nothing is left.
+/// Writes binary little-endian PLY. Vertices are written as they arrive; triangles, which follow
+/// them in the file, are kept in a temporary file beside it until the end. Attributes become
+/// properties of the same name, "uchar" or "float"; invalid characters in names become "_". All
+/// functions throw Error(kFile) if the system fails, for example on a full disk; the message gives
+/// the file and the number of bytes. Without finish() no file is left.
 class PlyMeshWriter final : public MeshSink {
  public:
-  /// `is_double`: positions are written in double precision, else as floats.
+  /// `is_double`: writes positions in double instead of single precision.
   PlyMeshWriter(const std::string& path, std::vector<PointAttribute> attributes, bool is_double);
   ~PlyMeshWriter() override;
 
-  /// Throws Error for more vertices than a PLY file can number, 2^32 - 1.
+  /// Throws Error for more vertices than PLY can index, 2^32 - 1.
   void add_vertices(std::vector<Vector3> positions, std::vector<float> attributes) override;
   void add_triangles(std::vector<std::array<std::int64_t, 3>> triangles) override;
 
   std::size_t vertex_count() const;
   std::size_t triangle_count() const;
 
-  /// Puts the file in place. Reports 0 to 1; a cancel leaves things as they were.
+  /// Moves the file to its target. Reports progress from 0 to 1; cancellation leaves the target
+  /// unchanged.
   void finish(const Progress& progress);
 
  private:

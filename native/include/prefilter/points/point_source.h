@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where points come from: an array, a file that is larger than memory.
+// Interface for reading points: from an array, or from a file larger than memory.
 #pragma once
 
 #include <array>
@@ -14,19 +14,18 @@
 
 namespace prefilter {
 
-/// Some points, with what is known of them.
+/// A batch of points.
 struct PointBatch {
   std::vector<Vector3> positions;
-  // One for each point, or none at all. Outward, of any length; zero where it is not known.
+  // One for each point, or empty. Outward, of any length; zero if unknown.
   std::vector<std::array<float, 3>> normals;
-  // How much each point counts (a scanner's confidence), 0 and up; empty where all count 1.
+  // The weight of each point (a scanner's confidence), at least 0; empty if all are 1.
   std::vector<float> weights;
-  // For each point where the scanner stood that saw it, where that differs among the points of the
-  // source; else none.
+  // The scanner's position for each point, if it differs within the source; otherwise empty.
   std::vector<Vector3> viewpoints;
-  // For each point one value for each attribute of the source.
+  // For each point, one value per attribute of the source.
   std::vector<float> attributes;
-  // Of several clouds that are joined, which one it is from.
+  // Index of the cloud, if several clouds are joined.
   std::size_t cloud = 0;
 
   void clear() {
@@ -38,46 +37,45 @@ struct PointBatch {
   }
 };
 
-/// Keeps the points of a batch that `is_kept` says, each with so many attributes.
+/// Keeps the points of a batch selected by `is_kept`, each with `attribute_count` attributes.
 void keep_points(const std::vector<bool>& is_kept, std::size_t attribute_count, PointBatch* batch);
 
-/// Points in an order that does not change, read from the first to the last as often as is needed.
+/// Points in a fixed order, which can be read repeatedly from first to last.
 class PointSource {
  public:
   virtual ~PointSource() = default;
 
-  /// How many points there are, where that is known before they are read.
+  /// Number of points, if known before reading.
   virtual std::optional<std::size_t> count() const = 0;
   virtual bool has_normals() const = 0;
-  /// Whether normals point outward; where not, some point inward, and which is not known.
+  /// Whether normals point outward; otherwise their sign is unknown.
   virtual bool are_normals_directed() const { return true; }
-  /// What every batch carries, in this order.
+  /// The attributes in every batch, in this order.
   virtual const std::vector<PointAttribute>& attributes() const = 0;
-  /// Where the scanner stood, in the points' coordinates; none where batches tell it, or nothing
-  /// does.
+  /// The scanner's position, in the points' coordinates; nothing if batches have it, or it is
+  /// unknown.
   virtual std::optional<Vector3> viewpoint() const { return std::nullopt; }
-  /// Whether positions need more than float precision (a file of doubles).
+  /// Whether positions need double precision.
   virtual bool is_double() const { return false; }
-  /// What is odd about the file, as far as it has been read; each names the file.
+  /// Warnings about the file, as far as it has been read; each names the file.
   virtual std::vector<std::string> warnings() const { return {}; }
-  /// How many rows points come from, where some of these can be read without those before them;
-  /// none where not. Rows that were not chosen count, too.
+  /// Number of rows that points come from, if ranges of rows can be read directly; otherwise
+  /// nothing. Includes rows that were not chosen.
   virtual std::optional<std::size_t> rows() const { return std::nullopt; }
 
-  /// Rewinds, and has the points of rows from `begin` up to `end` alone from now on. Only where
-  /// there are `rows`.
+  /// Rewinds, and restricts the source to the rows [begin, end). Only for sources with `rows`.
   virtual void choose_rows(std::size_t /*begin*/, std::size_t /*end*/) {}
 
-  /// Goes back to the first point.
+  /// Returns to the first point.
   virtual void rewind() = 0;
-  /// Replaces the batch by the next points, `most` at the most; false where there are no more.
-  /// Values that are not finite are passed on as they are. Throws Error where a file is damaged or
-  /// cannot be read; the message names it, and where in it.
+  /// Replaces the batch by the next points, at most `most`; returns false at the end. Values that
+  /// are not finite are passed on. Throws Error if a file is damaged or cannot be read; the message
+  /// names the file and the position.
   virtual bool read(std::size_t most, PointBatch* batch) = 0;
 };
 
-/// What changes the points of another source, which must outlive it, and knows of them what that
-/// one does.
+/// Base of sources that modify the points of another source, which must outlive it. Everything is
+/// forwarded to that source by default.
 class ChangedPoints : public PointSource {
  public:
   explicit ChangedPoints(PointSource* source) : source_(source) {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Fewer points, evenly spread.
+// Subsampling to evenly spread points.
 #pragma once
 
 #include <cstdint>
@@ -20,17 +20,17 @@ inline constexpr Named<Subsampling> kSubsamplingNames[] = {
     {"grid", Subsampling::kGrid},
 };
 
-/// The indices of the points that are kept, ascending.
+/// Returns the indices of the retained points in ascending order.
 ///
-/// kPoisson: no two that are kept are nearer to each other than `spacing`, and each that is left
-/// out is nearer than that to one that is kept. They are visited in an order that only looks
-/// random, and that does not depend on the order of the points. kGrid: of the points in each cell
-/// of a grid, `spacing` wide, the one nearest to their mean, the first of several.
+/// kPoisson: no two retained points are closer than `spacing`, and every other point is closer than
+/// that to a retained one. Points are visited in a pseudorandom order that is independent of their
+/// order in the input. kGrid: in each cell of a grid, `spacing` wide, the point nearest to the mean
+/// of the cell's points, the first of several.
 ///
-/// Points that hold a value that is not finite, or above 1e150, are left out; of points at one
-/// position the first is kept. The same for any number of threads. Throws Error for more than 2^31
-/// - 1 points, or a spacing that is not above 0, not finite, or a 1e15th of the points' extent or
-/// less; Error(kCancelled).
+/// Points with a value that is not finite, or above 1e150, are left out; of coincident points the
+/// first is used. The result is the same for any number of threads. Throws Error for more than 2^31
+/// - 1 points, or a spacing that is not above 0, not finite, or at most 1e-15 of the points'
+/// extent; Error(kCancelled).
 std::vector<std::int64_t> subsample(std::span<const Vector3> points, double spacing,
                                     Subsampling method, const Progress& progress, int threads);
 

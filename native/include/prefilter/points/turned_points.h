@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Points whose normals are turned while they are read.
+// Orients the normals of a source while it is read.
 #pragma once
 
 #include <cstddef>
@@ -12,22 +12,22 @@
 
 namespace prefilter {
 
-/// The points of a source, with each normal that points away from where it should reversed. Zero
-/// normals stay.
+/// The points of a source, with normals reversed if they point away from their target. Zero normals
+/// stay zero.
 class TurnedPoints final : public ChangedPoints {
  public:
   enum class Side {
-    kUp,         // along z
-    kViewpoint,  // to where the scanner stood
+    kUp,         // toward +z
+    kViewpoint,  // toward the scanner's position
   };
 
-  /// `viewpoints`: one for all points or one for each; none: as the source says, or else the
-  /// origin. Throws Error for a source without normals, another number of viewpoints where the
-  /// source knows how many points it has, or one that is not finite.
+  /// `viewpoints`: one for all points or one for each; if empty, the source's viewpoints, or else
+  /// the origin. Throws Error for a source without normals, a number of viewpoints that does not
+  /// match a known number of points, or a viewpoint that is not finite.
   TurnedPoints(PointSource* source, Side side, std::vector<Vector3> viewpoints);
 
   bool are_normals_directed() const override { return true; }
-  /// Viewpoints of points are in the order of these.
+  /// None with a viewpoint per point, as these follow the order of reading.
   std::optional<std::size_t> rows() const override {
     return viewpoints_.size() > 1 ? std::nullopt : source_->rows();
   }
@@ -35,8 +35,8 @@ class TurnedPoints final : public ChangedPoints {
   bool read(std::size_t most, PointBatch* batch) override;
 
  private:
-  // Of point `i` of a batch, where its normal should point to.
-  Vector3 way(const PointBatch& batch, std::size_t i) const;
+  // Direction that the normal of point `i` of a batch should have.
+  Vector3 target_direction(const PointBatch& batch, std::size_t i) const;
 
   Side side_;
   std::vector<Vector3> viewpoints_;

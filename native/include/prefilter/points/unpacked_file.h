@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Files of points that are packed by a program such as gzip.
+// Decompressed content of point files packed by programs such as gzip.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,13 @@ namespace prefilter {
 
 class File;
 
-/// What was in a packed file, as whoever unpacks it writes it here: a temporary file without a
-/// name, gone with this and all that reads it. All functions throw Error(kFile) where the system
-/// refuses, as a full disk does.
+/// A temporary file without a name that holds the decompressed content of a file. It exists until
+/// this object and all its readers are gone. All functions throw Error(kFile) if the system fails,
+/// for example on a full disk.
 class UnpackedFile {
  public:
-  /// In the system's folder for temporary files. `packed` is the path of the packed file, by which
-  /// messages call this.
+  /// Creates the file in the system's temporary folder. `packed` is the path of the compressed
+  /// file, for messages.
   explicit UnpackedFile(const std::string& packed);
 
   void write(std::span<const std::byte> bytes);

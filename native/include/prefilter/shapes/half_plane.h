@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The part of an outline on one side of a line.
+// Clips outlines to half planes and strips.
 #pragma once
 
 #include "prefilter/base/outline.h"
@@ -15,9 +15,9 @@ struct LinearFunction {
   double operator()(const Point2& p) const { return constant + dot(slope, p); }
 };
 
-/// What an outline encloses where low <= function <= high. Winding numbers stay what they are
-/// there and are 0 elsewhere, whether or not contours cross: what lies beyond is drawn together to
-/// the line, where it encloses nothing.
+/// The part of an outline where low <= function <= high. Winding numbers are kept there and become
+/// 0 elsewhere, even if contours cross: the parts outside collapse onto the lines, where they
+/// enclose nothing.
 Outline clip_between(const Outline& outline, const LinearFunction& function, double low,
                      double high);
 

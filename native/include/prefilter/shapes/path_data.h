@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Path data, as SVG writes them: lines, curves, and arcs of ellipses.
+// SVG path data: lines, curves and elliptical arcs.
 #pragma once
 
 #include <cstddef>
@@ -14,34 +14,35 @@
 
 namespace prefilter {
 
-/// Segments in a row, without an object for each. A letter says what one is, and its numbers are
-/// the coordinates of the points behind the one where it begins: M moves, L is a line, Q and C are
-/// Bezier curves, W a conic, whose weight is between its two points, and Z closes.
+/// Consecutive path segments in a compact form. A letter gives the kind of a segment, and its
+/// numbers are the coordinates of its points after the current one: M moves, L is a line, Q and C
+/// are Bezier curves, W is a conic, whose weight is between its two points, and Z closes the
+/// contour.
 struct PathSteps {
   std::string letters;
   std::vector<double> numbers;
 };
 
-/// How many numbers follow a letter; -1 for one that is no segment's.
+/// Number of numbers that follow a letter; -1 for an unknown letter.
 int number_count(char letter);
 
-/// What reading a text came to.
+/// How reading path data ended.
 enum class PathOutcome : std::uint8_t {
   kWhole,
-  kBroken,   // up to an error
-  kTooMany,  // segments
+  kBroken,   // read up to an error
+  kTooMany,  // exceeded the limit of segments
 };
 
-/// Appends what path data draw up to their first error: arcs become conics of a quarter or less
-/// ("Conversion from endpoint to center parameterization" in the appendix of SVG 1.1, F.6.5). Ends
-/// with kTooMany where there are more than `most` segments.
+/// Appends the segments of path data up to their first error. Arcs become conics of at most a
+/// quarter ellipse ("Conversion from endpoint to center parameterization", SVG 1.1, F.6.5). Stops
+/// with kTooMany above `most` segments.
 PathOutcome read_path_data(std::string_view text, std::size_t most, PathSteps* steps);
 
-/// Appends the numbers that a text begins with, and returns whether it holds nothing else.
+/// Appends the leading numbers of a text. Returns whether the text contains nothing else.
 bool read_numbers(std::string_view text, std::vector<double>* numbers);
 
-/// The smallest box around what the steps draw, where a move that draws nothing does not count;
-/// empty without a point. The steps are those of whole segments, of weights above 0.
+/// Smallest box around the drawn steps, ignoring moves that draw nothing; empty without a point.
+/// The steps must be complete, with weights above 0.
 Box2 drawn_box(std::string_view letters, std::span<const double> numbers);
 
 }  // namespace prefilter

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Outlines along the sides of pixels.
+// Outlines of sets of pixels.
 #pragma once
 
 #include "prefilter/base/outline.h"
 
 namespace prefilter {
 
-/// Pixels farther from 0 than this are left out.
-inline constexpr int kMostCrispPixels = 1 << 17;
+/// Pixels with coordinates above this in magnitude are left out.
+inline constexpr int kMaxOutlinePixel = 1 << 17;
 
-/// All pixels whose centers an outline fills, as an outline that winds once around them. A center
-/// on its boundary counts where the filled part is to its right or, with y upwards, below it.
-/// Throws Error where a coordinate is not finite, or farther than 1e9 pixels away.
+/// The outline of all pixels whose centers are inside an outline; it winds once around them. A
+/// center on the boundary counts if the inside is to its right or, with y pointing up, below it.
+/// Throws Error for coordinates that are not finite, or above 1e9 in magnitude.
 Outline pixel_outline(const Outline& outline, FillRule rule);
 
 }  // namespace prefilter

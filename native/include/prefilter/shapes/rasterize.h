@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Shapes to images, filtered in closed form: chapter 2.
+// Rasterization of shapes, filtered in closed form: chapter 2.
 #pragma once
 
 #include <array>
@@ -19,36 +19,36 @@
 
 namespace prefilter {
 
-/// What an outline encloses, painted. Coordinates are pixels; pixel (i, j) is [i, i + 1) x
-/// [j, j + 1), and row 0 is the lowest.
+/// A painted outline. Coordinates are in pixels; pixel (i, j) is [i, i + 1) x [j, j + 1), and row 0
+/// is the lowest.
 struct Shape {
   Outline outline;
   FillRule fill_rule = FillRule::kNonzero;
   Paint paint;
-  /// The caller knows that contours wind once, counter-clockwise, round what they fill. A point
-  /// then counts as often as they wind round it, and no overlaps are looked for.
+  /// The caller guarantees that contours wind once, counter-clockwise, around the filled part.
+  /// Overlaps are then not resolved: a point counts as often as the contours wind around it.
   bool winds_once = false;
 };
 
 enum class RasterMethod : std::uint8_t {
   kScanline,  // section 2.2
-  /// Chapter 3: Haar coefficients. For the box filter and constant colors. Open contours are left
-  /// so; a shape that has one is the sum of its winding numbers, whatever its fill rule.
+  /// Chapter 3: Haar coefficients, for the box filter and constant colors. Open contours are not
+  /// closed; a shape that has one is the sum of its winding numbers, whatever its fill rule.
   kWavelet,
 };
 
 inline constexpr Named<RasterMethod> kRasterMethods[] = {{"scanline", RasterMethod::kScanline},
                                                          {"wavelet", RasterMethod::kWavelet}};
 
-/// What becomes of several shapes at one place.
+/// How overlapping shapes are combined.
 enum class Overlap : std::uint8_t {
-  kAdd,    // their values are added
-  kCover,  // a later one covers those before it, as far as it is opaque
+  kAdd,    // values are added
+  kCover,  // later shapes cover earlier ones, as far as they are opaque
 };
 
 inline constexpr Named<Overlap> kOverlaps[] = {{"add", Overlap::kAdd}, {"cover", Overlap::kCover}};
 
-/// The names of all filters of shapes.
+/// The names of all filters for shapes.
 std::span<const std::string_view> raster_filters();
 
 struct RasterOptions {
@@ -56,19 +56,19 @@ struct RasterOptions {
   int height = 0;  // pixels
   std::string filter = "box";
   RasterMethod method = RasterMethod::kScanline;
-  /// Of kWavelet: the synthesis ends at cells of which so many, doubled, make the side of the
-  /// square of the smallest power of two that holds the image; -1: at pixels.
+  /// For kWavelet: the depth at which synthesis ends, in halvings of the smallest square that holds
+  /// the image and whose side is a power of two; -1 stands for the depth of pixels.
   int depth = -1;
   Overlap overlap = Overlap::kCover;
-  /// What shows where no shape is; none for 0.
+  /// Values where no shape is; empty for 0.
   std::vector<float> background;
   int threads = 0;
   Progress progress;
 };
 
-/// The image of all shapes, each pixel the filter's mean around its center. Throws Error for shapes
-/// of different numbers of channels, points that are not finite, a filter there is not, a size of
-/// 0 or one that memory does not hold, and for what the method does not have.
+/// Renders shapes; each pixel is the filtered mean around its center. Throws Error for shapes with
+/// different numbers of channels, points that are not finite, an unknown filter, a size of 0 or
+/// beyond the available memory, and features that the method does not support.
 Image rasterize(std::span<const Shape> shapes, const RasterOptions& options);
 
 /// Interleaved bytes, in the layout of Image.
@@ -79,8 +79,8 @@ struct ByteImage {
   std::vector<std::uint8_t> data;
 };
 
-/// The same, with the floats from 0 to 1 as 0 to 255: rounded to the nearest, halves to even, and
-/// cut off outside.
+/// Renders as `rasterize`, with [0, 1] mapped to 0 to 255: rounded to the nearest, halves to even,
+/// and clamped.
 ByteImage rasterize_bytes(std::span<const Shape> shapes, const RasterOptions& options);
 
 }  // namespace prefilter

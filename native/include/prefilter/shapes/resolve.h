@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Outlines whose contours overlap, made into the boundary of what they fill.
+// Resolves overlapping contours to the boundary of the filled region.
 #pragma once
 
 #include <optional>
@@ -10,22 +10,20 @@
 
 namespace prefilter {
 
-/// How far curves may be off where they have to be replaced by lines, in pixels.
+/// Largest error when curves have to be replaced by lines, in pixels.
 inline constexpr double kOutlineTolerance = 1e-3;
 
-/// The boundary of what a fill rule fills: closed contours that cross neither each other nor
-/// themselves, with the inside on the left. Every point inside has the winding number 1, every
-/// point outside 0.
+/// The boundary of the region that a fill rule fills: closed contours that cross neither each other
+/// nor themselves, with the inside on the left. Winding numbers are 1 inside and 0 outside.
 ///
-/// Curves stay the same curves: a contour that meets no other one is kept as it is, control point
-/// by control point, reversed, or left out, as the rule says, and those that cross are cut where
-/// they do. Only where rounding leaves no way to tell what crosses what, all curves are replaced by
-/// lines, off by `tolerance` at the most. That is above 0, in the outline's units. Coordinates must
-/// be finite.
+/// Curves are preserved: a contour that meets no other contour is copied, reversed or dropped, as
+/// the rule requires, and contours that cross are cut at their intersections. Only if rounding
+/// makes the intersections ambiguous, all curves are replaced by lines, with an error of at most
+/// `tolerance` > 0, in the outline's units. Coordinates must be finite.
 Outline resolve(const Outline& outline, FillRule rule, double tolerance = kOutlineTolerance);
 
-/// The same, but nothing where that would be the outline itself: it is resolved as it is, but for
-/// open contours, which are filled as if they were closed, and contours that are points.
+/// The result of `resolve`, or nothing if the outline is already resolved. Open contours count as
+/// closed, and contours without extent are ignored.
 std::optional<Outline> resolved(const Outline& outline, FillRule rule,
                                 double tolerance = kOutlineTolerance,
                                 const Progress& progress = {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Unions, intersections and differences of what outlines fill.
+// Unions, intersections and differences of filled outlines.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ inline constexpr Named<OutlineOperation> kOutlineOperations[] = {
     {"intersection", OutlineOperation::kIntersection},
     {"difference", OutlineOperation::kDifference}};
 
-/// The boundary of a set operation of what two outlines fill by their rules, as `resolve` would
-/// have it. Throws Error where a point is not finite, or farther than 1e100 away.
+/// The boundary of a set operation on the regions that two outlines fill, in the form of `resolve`.
+/// Throws Error for points that are not finite, or above 1e100 in magnitude.
 Outline combine(const Outline& first, FillRule first_rule, const Outline& second,
                 FillRule second_rule, OutlineOperation operation,
                 double tolerance = kOutlineTolerance);

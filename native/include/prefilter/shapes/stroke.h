@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Strokes along outlines, as outlines of their own.
+// Strokes of outlines.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace prefilter {
 
-/// What fills the gap outside of a corner.
+/// Fills the gap at the outside of a corner.
 enum class StrokeJoin : std::uint8_t { kMiter, kRound, kBevel };
 
 inline constexpr Named<StrokeJoin> kStrokeJoins[] = {
     {"miter", StrokeJoin::kMiter}, {"round", StrokeJoin::kRound}, {"bevel", StrokeJoin::kBevel}};
 
-/// How open contours and dashes end: where they do, with half a disc, or with half a square.
+/// End of open contours and dashes: flush, with a half disc, or with half a square.
 enum class StrokeCap : std::uint8_t { kButt, kRound, kSquare };
 
 inline constexpr Named<StrokeCap> kStrokeCaps[] = {
@@ -28,29 +28,29 @@ struct StrokeOptions {
   double width = 1.0;  // in the outline's units
   StrokeJoin join = StrokeJoin::kMiter;
   StrokeCap cap = StrokeCap::kButt;
-  /// A miter longer than this, in widths, is cut off to a bevel; 1 or more.
+  /// Miters longer than this many widths become bevels; at least 1.
   double miter_limit = 4.0;
-  /// Lengths along the curve of dashes and gaps in turns, in the outline's units; none for a solid
-  /// stroke. An odd number of them is gone through twice. Every contour begins anew.
+  /// Alternating lengths of dashes and gaps along the curve, in the outline's units; empty for a
+  /// solid stroke. An odd number of them is repeated. Every contour restarts the pattern.
   std::vector<double> dashes;
-  /// How far into the dashes a contour begins.
+  /// Position in the dash pattern at which a contour starts.
   double dash_offset = 0.0;
 };
 
-/// What a pen of a width covers along the contours of an outline, as `resolve` would have it. A
-/// contour of no length is covered by its caps alone, unless they are butt; one without segments
-/// that was not closed is not drawn. Lines stay lines and round joins arcs; curves beside a curve
-/// are within `tolerance` of where they should be.
+/// The region covered by a pen that follows the contours of an outline, in the form of `resolve`. A
+/// contour of length 0 gets only its caps, unless they are butt; a contour without segments is
+/// drawn only if it was closed. Lines stay lines and round joins become arcs; offsets of curves are
+/// accurate to `tolerance`.
 ///
-/// Throws Error for a width, dash or offset that is not finite, or negative where it must not be;
-/// for a miter limit below 1; for over a million dashes on a contour.
+/// Throws Error for a width, dash or offset that is not finite or is negative where that is not
+/// allowed, a miter limit below 1, and more than a million dashes on a contour.
 Outline stroke(const Outline& outline, const StrokeOptions& options,
                double tolerance = kOutlineTolerance);
 
-/// The same, but where so much of it overlaps that it would take more steps than some for every
-/// curve, the parts that it is put together from: they overlap, and by the non-zero rule fill the
-/// same. Sets `winds_once` to whether they do not.
-Outline stroke_soon(const Outline& outline, const StrokeOptions& options, double tolerance,
-                    bool* winds_once);
+/// Strokes an outline. If overlaps cannot be resolved within a constant number of steps per curve,
+/// returns the overlapping parts of the stroke, which the non-zero rule fills equally. Sets
+/// `winds_once` to whether overlaps were resolved.
+Outline stroke_within_budget(const Outline& outline, const StrokeOptions& options, double tolerance,
+                             bool* winds_once);
 
 }  // namespace prefilter

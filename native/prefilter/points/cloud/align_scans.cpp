@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Chen and Medioni, Object modelling by registration of multiple range images (1992): distances to
-// planes instead of points; all scans at once, as in Bergevin et al., Towards a general multi-view
+// Point-to-plane registration by Chen and Medioni, Object modelling by registration of multiple
+// range images (1992), of all scans at once as in Bergevin et al., Towards a general multi-view
 // registration technique (1996).
 #include "prefilter/points/align_scans.h"
 
@@ -22,25 +22,25 @@ namespace prefilter {
 namespace {
 
 constexpr double kReachShare = 0.05;  // of the diagonal
-constexpr double kShrinking = 0.7;    // of the reach, from one iteration to the next
-// Searches in all, and samples of a scan.
-constexpr std::size_t kPairs = 1'000'000;
-constexpr std::size_t kLeastSamples = 1'000;
+constexpr double kReachDecay = 0.7;   // of the reach per iteration
+// Searches per iteration, and samples per scan.
+constexpr std::size_t kTotalSamples = 1'000'000;
+constexpr std::size_t kMinSamples = 1'000;
 
-// What one scan finds in another.
-struct PairsOf {
+// Pairs between one scan and another.
+struct ScanPairs {
   std::size_t scan = 0;
   std::size_t other = 0;
   std::vector<MotionPair> pairs;
 };
 
-double median_distance(const std::vector<PairsOf>& all) {
+double median_distance(const std::vector<ScanPairs>& all) {
   std::vector<double> distances;
-  for (const PairsOf& found : all) add_distances(found.pairs, &distances);
+  for (const ScanPairs& scan_pairs : all) add_distances(scan_pairs.pairs, &distances);
   return median_of(&distances);
 }
 
-// The pairs of a sample's scan and another one.
+// Pairs samples of a scan with points of another scan.
 std::vector<MotionPair> find_pairs(const MovedScan& scan, std::span<const std::uint32_t> samples,
                                    const MovedScan& other, double reach) {
   std::vector<MotionPair> pairs;
@@ -53,11 +53,11 @@ std::vector<MotionPair> find_pairs(const MovedScan& scan, std::span<const std::u
     const std::uint32_t near = other.search().nearest(there, reach * reach);
     if (near == NeighborSearch::kNowhere) continue;
     const Vector3 normal = turned(other.motion, other.normal(near));
-    if (std::abs(dot(normal, turned(scan.motion, scan.normal(place)))) < kAgreement) continue;
+    if (std::abs(dot(normal, turned(scan.motion, scan.normal(place)))) < kMinNormalCosine) continue;
     const Vector3 offset = there - other.position(near);
     const double distance = dot(other.normal(near), offset);
     const Vector3 aside = offset - distance * other.normal(near);
-    // On a border what is nearest lies aside.
+    // Beyond a border, the nearest point lies sideways.
     if (length(aside) > other.spacing() + 0.5 * std::abs(distance)) continue;
     const Vector3 at = moved(other.motion, other.position(near));
     pairs.push_back({distance, derivative(normal, point - center),
@@ -75,66 +75,72 @@ class Aligner {
     reach_ = options.reach.value_or(kReachShare * length(box.high - box.low));
     const double count = static_cast<double>(scans.size());
     for (std::size_t s = 0; s < scans.size(); ++s) {
-      const Progress part = options.progress.part(kReading * static_cast<double>(s) / count,
-                                                  kReading * static_cast<double>(s + 1) / count);
+      const Progress part =
+          options.progress.part(kReadProgress * static_cast<double>(s) / count,
+                                kReadProgress * static_cast<double>(s + 1) / count);
       scans_.emplace_back(scans[s], origin_, part, threads_);
     }
-    const std::size_t each = kPairs / (scans.size() * (scans.size() - 1));
+    const std::size_t each = kTotalSamples / (scans.size() * (scans.size() - 1));
     for (const MovedScan& scan : scans_) {
-      samples_.push_back(scan.samples(std::clamp(each, kLeastSamples, kMostSamples)));
+      samples_.push_back(scan.samples(std::clamp(each, kMinSamples, kMaxSamples)));
       spacing_ = std::max(spacing_, scan.spacing());
     }
-    least_reach_ = std::min(reach_, kLeastReach * spacing_);
+    least_reach_ = std::min(reach_, kMinReach * spacing_);
   }
 
   Alignment align(int iterations, const Progress& progress) {
     Alignment result;
-    result.before = median_distance(pairs(least_reach_, progress.part(kReading, kFirst)));
+    result.before =
+        median_distance(pairs(least_reach_, progress.part(kReadProgress, kFirstPairsProgress)));
     double reach = reach_;
     for (int k = 0; k < iterations; ++k) {
       const double done = static_cast<double>(k) / iterations;
-      const Progress part = progress.part(kFirst + (kLast - kFirst) * done,
-                                          kFirst + (kLast - kFirst) * (done + 1.0 / iterations));
+      const Progress part =
+          progress.part(kFirstPairsProgress + (kLastPairsProgress - kFirstPairsProgress) * done,
+                        kFirstPairsProgress +
+                            (kLastPairsProgress - kFirstPairsProgress) * (done + 1.0 / iterations));
       const double moved = step(pairs(reach, part));
-      if (reach <= least_reach_ && moved < kStill * spacing_) break;
-      reach = std::max(least_reach_, kShrinking * reach);
+      if (reach <= least_reach_ && moved < kMinMotion * spacing_) break;
+      reach = std::max(least_reach_, kReachDecay * reach);
     }
-    const std::vector<PairsOf> last = pairs(least_reach_, progress.part(kLast, 1.0));
+    const std::vector<ScanPairs> last = pairs(least_reach_, progress.part(kLastPairsProgress, 1.0));
     result.after = median_distance(last);
     result.pairs.resize(scans_.size());
-    for (const PairsOf& found : last) result.pairs[found.scan] += found.pairs.size();
+    for (const ScanPairs& scan_pairs : last)
+      result.pairs[scan_pairs.scan] += scan_pairs.pairs.size();
     for (const MovedScan& scan : scans_)
-      result.motions.push_back(about(scan.motion, Vector3{} - origin_));
+      result.motions.push_back(relative_to(scan.motion, Vector3{} - origin_));
     progress.report(1.0);
     return result;
   }
 
  private:
-  // Shares of the work: of reading the scans, and of the first and last look at pairs.
-  static constexpr double kReading = 0.2;
-  static constexpr double kFirst = 0.22;
-  static constexpr double kLast = 0.98;
+  // Progress after reading the scans, after the first pairs, and before the last pairs.
+  static constexpr double kReadProgress = 0.2;
+  static constexpr double kFirstPairsProgress = 0.22;
+  static constexpr double kLastPairsProgress = 0.98;
 
-  std::vector<PairsOf> pairs(double reach, const Progress& progress) const {
-    std::vector<PairsOf> all;
+  std::vector<ScanPairs> pairs(double reach, const Progress& progress) const {
+    std::vector<ScanPairs> all;
     for (std::size_t s = 0; s < scans_.size(); ++s) {
       for (std::size_t o = 0; o < scans_.size(); ++o) {
         if (s != o) all.push_back({s, o, {}});
       }
     }
     parallel_for(static_cast<std::int64_t>(all.size()), threads_, progress, [&](std::int64_t i) {
-      PairsOf& found = all[static_cast<std::size_t>(i)];
-      found.pairs =
-          find_pairs(scans_[found.scan], samples_[found.scan], scans_[found.other], reach);
+      ScanPairs& scan_pairs = all[static_cast<std::size_t>(i)];
+      scan_pairs.pairs = find_pairs(scans_[scan_pairs.scan], samples_[scan_pairs.scan],
+                                    scans_[scan_pairs.other], reach);
     });
     return all;
   }
 
-  // Moves all scans; returns how far the farthest point of one went, about.
-  double step(const std::vector<PairsOf>& all) {
-    const double cutoff = cutoff_for(median_distance(all), kStill * spacing_);
+  // Moves all scans; returns a bound on the largest displacement of a point.
+  double step(const std::vector<ScanPairs>& all) {
+    const double cutoff = cutoff_for(median_distance(all), kMinMotion * spacing_);
     MotionSystem system(scans_.size());
-    for (const PairsOf& found : all) system.add(found.scan, found.other, found.pairs, cutoff);
+    for (const ScanPairs& scan_pairs : all)
+      system.add(scan_pairs.scan, scan_pairs.other, scan_pairs.pairs, cutoff);
     const std::vector<MotionStep> steps = system.solve();
     double farthest = 0.0;
     for (std::size_t s = 1; s < scans_.size(); ++s) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Point-to-plane registration against the triangles nearest to the points.
 #include "prefilter/points/align_to_surface.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@
 namespace prefilter {
 namespace {
 
-// A surface relative to an origin, ready for searches.
+// A surface relative to an origin, with its search structure.
 class PlacedSurface {
  public:
   PlacedSurface(const InputMesh& mesh, const Vector3& origin, const Progress& progress, int threads)
@@ -24,7 +25,7 @@ class PlacedSurface {
         triangles_(mesh.triangles),
         nearest_({positions_, triangles_}, progress, threads) {}
 
-  // The pairs of samples of a scan and the surface.
+  // Pairs samples of a scan with points of the surface.
   std::vector<MotionPair> pairs(const MovedScan& scan, std::span<const std::uint32_t> samples,
                                 double reach, const Progress& progress, int threads) const;
 
@@ -56,19 +57,20 @@ std::vector<MotionPair> PlacedSurface::pairs(const MovedScan& scan,
   const std::vector<SurfacePoint> nearest = nearest_.find(points, progress, threads);
   std::vector<MotionPair> pairs;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const SurfacePoint& found = nearest[i];
-    if (found.distance > reach) continue;
-    const Vector3& a = corner(found.triangle, 0);
-    const Vector3 to_b = corner(found.triangle, 1) - a;
-    const Vector3 to_c = corner(found.triangle, 2) - a;
+    const SurfacePoint& surface_point = nearest[i];
+    if (surface_point.distance > reach) continue;
+    const Vector3& a = corner(surface_point.triangle, 0);
+    const Vector3 to_b = corner(surface_point.triangle, 1) - a;
+    const Vector3 to_c = corner(surface_point.triangle, 2) - a;
     Vector3 normal = cross(to_b, to_c);
     const double size = length(normal);
     if (!(size > 0.0)) continue;
     normal = 1.0 / size * normal;
-    if (dot(normal, turned(scan.motion, scan.normal(samples[i]))) < kAgreement) continue;
-    const Vector3 offset = points[i] - (a + found.weights[1] * to_b + found.weights[2] * to_c);
+    if (dot(normal, turned(scan.motion, scan.normal(samples[i]))) < kMinNormalCosine) continue;
+    const Vector3 offset =
+        points[i] - (a + surface_point.weights[1] * to_b + surface_point.weights[2] * to_c);
     const double distance = dot(normal, offset);
-    // On a border what is nearest lies aside.
+    // Beyond a border, the nearest point lies sideways.
     const Vector3 aside = offset - distance * normal;
     if (length(aside) > scan.spacing() + 0.5 * std::abs(distance)) continue;
     pairs.push_back({distance, derivative(normal, points[i] - center), {}});
@@ -82,7 +84,7 @@ void add_to(const std::vector<MotionPair>& pairs, std::size_t scan, Alignment* r
   result->pairs[scan] = pairs.size();
 }
 
-// The motion that undoes another one.
+// The inverse motion.
 RigidMotion inverse(const RigidMotion& motion) {
   RigidMotion result;
   for (std::size_t r = 0; r < 3; ++r) {
@@ -113,9 +115,9 @@ Alignment align_to_surface(std::span<const ScanView> scans, std::span<const Rigi
     };
     const Progress progress = options.progress.part(share(0.0), share(1.0));
     MovedScan scan(scans[s], origin, progress.part(0.0, 0.2), options.threads);
-    scan.motion = about(motions[s], origin);
-    const std::vector<std::uint32_t> samples = scan.samples(kMostSamples);
-    const double most = kLeastReach * scan.spacing();
+    scan.motion = relative_to(motions[s], origin);
+    const std::vector<std::uint32_t> samples = scan.samples(kMaxSamples);
+    const double most = kMinReach * scan.spacing();
     const double reach = std::min(options.reach.value_or(most), most);
     const auto pairs_at = [&](double from, double to) {
       return placed.pairs(scan, samples, reach, progress.part(from, to), options.threads);
@@ -126,14 +128,14 @@ Alignment align_to_surface(std::span<const ScanView> scans, std::span<const Rigi
       std::vector<double> distances;
       add_distances(pairs, &distances);
       MotionSystem system(2);
-      system.add(1, 0, pairs, cutoff_for(median_of(&distances), kStill * scan.spacing()));
+      system.add(1, 0, pairs, cutoff_for(median_of(&distances), kMinMotion * scan.spacing()));
       const double moved = scan.move(system.solve()[1]);
       const double done = 0.25 + 0.75 * k / options.iterations;
       pairs = pairs_at(done, done + 0.75 / options.iterations);
-      if (moved < kStill * scan.spacing()) break;
+      if (moved < kMinMotion * scan.spacing()) break;
     }
     add_to(pairs, s, &result, &after);
-    result.motions.push_back(about(scan.motion, Vector3{} - origin));
+    result.motions.push_back(relative_to(scan.motion, Vector3{} - origin));
   }
   const RigidMotion back = then(inverse(result.motions.front()), motions.front());
   for (RigidMotion& motion : result.motions) motion = then(motion, back);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Weighted least squares with Tukey's biweight, solved by a damped Cholesky factorization.
 #include "prefilter/points/cloud/motion_system.h"
 
 #include <algorithm>
@@ -8,10 +9,12 @@
 namespace prefilter {
 namespace {
 
-constexpr double kDamping = 1e-4;  // relative to a scan's own mean diagonal
-// Beyond so many standard deviations a pair has no weight (Tukey's for 95 % efficiency).
-constexpr double kCutoff = 4.685;
-constexpr double kDeviation = 1.4826;  // of the median of distances that are normally distributed
+// relative to the mean diagonal of a scan's rotations or translations
+constexpr double kDamping = 1e-4;
+// Standard deviations at which Tukey's biweight reaches 0, for 95 % efficiency.
+constexpr double kTukeyCutoff = 4.685;
+// ratio of standard deviation and median of absolute normal deviates
+constexpr double kMedianToDeviation = 1.4826;
 
 }  // namespace
 
@@ -32,20 +35,20 @@ double median_of(std::vector<double>* values) {
 }
 
 double cutoff_for(double median, double least) {
-  return kCutoff * std::max(kDeviation * median, least);
+  return kTukeyCutoff * std::max(kMedianToDeviation * median, least);
 }
 
 void MotionSystem::add(std::size_t scan, std::size_t other, std::span<const MotionPair> pairs,
                        double cutoff) {
-  std::array<double, 4 * kFreedom * kFreedom> block{};
-  std::array<double, 2 * kFreedom> right{};
+  std::array<double, 4 * kDegreesOfFreedom * kDegreesOfFreedom> block{};
+  std::array<double, 2 * kDegreesOfFreedom> right{};
   for (const MotionPair& pair : pairs) {
     const double share = pair.distance / cutoff;
     if (!(std::abs(share) < 1.0)) continue;
     const double weight = (1.0 - share * share) * (1.0 - share * share);
-    std::array<double, 2 * kFreedom> both;
+    std::array<double, 2 * kDegreesOfFreedom> both;
     std::copy(pair.own.begin(), pair.own.end(), both.begin());
-    std::copy(pair.other.begin(), pair.other.end(), both.begin() + kFreedom);
+    std::copy(pair.other.begin(), pair.other.end(), both.begin() + kDegreesOfFreedom);
     for (std::size_t r = 0; r < both.size(); ++r) {
       right[r] -= weight * both[r] * pair.distance;
       for (std::size_t c = 0; c < both.size(); ++c) {
@@ -55,11 +58,11 @@ void MotionSystem::add(std::size_t scan, std::size_t other, std::span<const Moti
   }
   const std::size_t scans[2] = {scan, other};
   for (std::size_t r = 0; r < right.size(); ++r) {
-    const std::size_t row = unknown(scans[r / kFreedom], r % kFreedom);
+    const std::size_t row = unknown(scans[r / kDegreesOfFreedom], r % kDegreesOfFreedom);
     if (row == kFixed) continue;
     right_[row] += right[r];
     for (std::size_t c = 0; c < right.size(); ++c) {
-      const std::size_t column = unknown(scans[c / kFreedom], c % kFreedom);
+      const std::size_t column = unknown(scans[c / kDegreesOfFreedom], c % kDegreesOfFreedom);
       if (column != kFixed) matrix_[row * size_ + column] += block[r * right.size() + c];
     }
   }
@@ -76,8 +79,9 @@ std::vector<MotionStep> MotionSystem::solve() {
     for (std::size_t k = r + 1; k < size_; ++k) right_[r] -= matrix_[k * size_ + r] * right_[k];
     right_[r] /= matrix_[r * size_ + r];
   }
-  std::vector<MotionStep> steps(size_ / kFreedom + 1);
-  for (std::size_t i = 0; i < size_; ++i) steps[i / kFreedom + 1][i % kFreedom] = right_[i];
+  std::vector<MotionStep> steps(size_ / kDegreesOfFreedom + 1);
+  for (std::size_t i = 0; i < size_; ++i)
+    steps[i / kDegreesOfFreedom + 1][i % kDegreesOfFreedom] = right_[i];
   return steps;
 }
 
@@ -91,7 +95,7 @@ void MotionSystem::damp() {
   }
 }
 
-// Cholesky's factor, in the lower half.
+// Cholesky factor, in the lower triangle.
 void MotionSystem::factor() {
   for (std::size_t r = 0; r < size_; ++r) {
     for (std::size_t c = 0; c <= r; ++c) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Small motions of scans by pairs of what belongs together.
+// Least squares for small motions of scans.
 #pragma once
 
 #include <array>
@@ -13,48 +13,49 @@
 
 namespace prefilter {
 
-inline constexpr std::size_t kFreedom = 6;  // a turn, then a shift
-inline constexpr double kAgreement = 0.7;   // the cosine of normals of a pair, at the least
+inline constexpr std::size_t kDegreesOfFreedom = 6;  // a rotation, then a translation
+inline constexpr double kMinNormalCosine = 0.7;  // smallest cosine between the normals of a pair
 
-using MotionStep = std::array<double, kFreedom>;
+using MotionStep = std::array<double, kDegreesOfFreedom>;
 
-/// A point of one scan, how far it is from the plane of another's, and what a small motion of
-/// either does to that.
+/// Distance of a point from a plane of another scan, and its derivatives by the motions of both
+/// scans.
 struct MotionPair {
   double distance = 0.0;
   MotionStep own{};
   MotionStep other{};
 };
 
-/// What a small motion of a point does to its distance from a plane; `arm` is from the center of
-/// its turn.
+/// Derivative of a point's distance from a plane by a small motion; `arm` is the point relative to
+/// the center of rotation.
 MotionStep derivative(const Vector3& normal, const Vector3& arm);
 
 void add_distances(std::span<const MotionPair> pairs, std::vector<double>* distances);
 
-/// Of values in any order, which change theirs; 0 of none.
+/// Median of values, which are reordered; 0 if there are none.
 double median_of(std::vector<double>* values);
 
-/// The distance from which on pairs have no weight: so many standard deviations, by the median.
+/// Distance at which the weight of pairs reaches 0: a multiple of the standard deviation, estimated
+/// from the median.
 double cutoff_for(double median, double least);
 
-/// The least squares of the motions of all scans but the first.
+/// Normal equations for the motions of all scans except the first, which is fixed.
 class MotionSystem {
  public:
   explicit MotionSystem(std::size_t scans)
-      : size_(kFreedom * (scans - 1)), matrix_(size_ * size_), right_(size_) {}
+      : size_(kDegreesOfFreedom * (scans - 1)), matrix_(size_ * size_), right_(size_) {}
 
   void add(std::size_t scan, std::size_t other, std::span<const MotionPair> pairs, double cutoff);
 
-  /// The steps of all scans. What pairs say little about, such as the way along a plane, hardly
-  /// changes.
+  /// Returns the steps of all scans. Directions that pairs do not determine, such as sliding along
+  /// a plane, hardly change.
   std::vector<MotionStep> solve();
 
  private:
   static constexpr std::size_t kFixed = std::numeric_limits<std::size_t>::max();
 
   static std::size_t unknown(std::size_t scan, std::size_t freedom) {
-    return scan == 0 ? kFixed : kFreedom * (scan - 1) + freedom;
+    return scan == 0 ? kFixed : kDegreesOfFreedom * (scan - 1) + freedom;
   }
   void damp();
   void factor();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Scans in coordinates relative to a common origin, which keeps rounding errors small.
 #include "prefilter/points/cloud/moved_scan.h"
 
 #include <algorithm>
@@ -14,32 +15,32 @@ namespace prefilter {
 namespace {
 
 constexpr std::size_t kSpacingSamples = 1000;
-constexpr std::size_t kNear = 5;  // a point and the four around it
-constexpr double kLargest = 1e150;
-constexpr int kMostIterations = 1000;
+constexpr std::size_t kSpacingNeighbors = 5;  // a point and its four neighbors
+constexpr double kMaxScanCoordinate = 1e150;
+constexpr int kMaxIterations = 1000;
 
 bool is_usable(const Vector3& vector) {
-  return std::abs(vector[0]) <= kLargest && std::abs(vector[1]) <= kLargest &&
-         std::abs(vector[2]) <= kLargest;
+  return std::abs(vector[0]) <= kMaxScanCoordinate && std::abs(vector[1]) <= kMaxScanCoordinate &&
+         std::abs(vector[2]) <= kMaxScanCoordinate;
 }
 
-// The points of a scan that count, and their normals, 1 long.
-std::pair<std::vector<Vector3>, std::vector<Vector3>> usable(const ScanView& scan,
-                                                             const Vector3& origin) {
-  std::pair<std::vector<Vector3>, std::vector<Vector3>> found;
+// The valid points of a scan, and their unit normals.
+std::pair<std::vector<Vector3>, std::vector<Vector3>> usable_points(const ScanView& scan,
+                                                                    const Vector3& origin) {
+  std::pair<std::vector<Vector3>, std::vector<Vector3>> valid;
   for (std::size_t i = 0; i < scan.positions.size(); ++i) {
     const double size = length(scan.normals[i]);
     if (!is_usable(scan.positions[i]) || !is_usable(scan.normals[i]) || !(size > 0.0)) continue;
-    found.first.push_back(scan.positions[i] - origin);
-    found.second.push_back(1.0 / size * scan.normals[i]);
+    valid.first.push_back(scan.positions[i] - origin);
+    valid.second.push_back(1.0 / size * scan.normals[i]);
   }
-  return found;
+  return valid;
 }
 
 }  // namespace
 
 RigidMotion small_motion(const Vector3& turn, const Vector3& shift, const Vector3& center) {
-  // The quaternion (1, turn / 2), made 1 long.
+  // The normalized quaternion (1, turn / 2).
   const double x = 0.5 * turn[0];
   const double y = 0.5 * turn[1];
   const double z = 0.5 * turn[2];
@@ -55,7 +56,7 @@ RigidMotion small_motion(const Vector3& turn, const Vector3& shift, const Vector
   return result;
 }
 
-RigidMotion about(const RigidMotion& motion, const Vector3& origin) {
+RigidMotion relative_to(const RigidMotion& motion, const Vector3& origin) {
   RigidMotion result = motion;
   result.shift = motion.shift + (turned(motion, origin) - origin);
   return result;
@@ -91,15 +92,15 @@ void check_alignment(std::span<const ScanView> scans, const AlignOptions& option
   if (options.reach && !(*options.reach > 0.0 && std::isfinite(*options.reach))) {
     throw_invalid("reach: found " + to_text(*options.reach) + "; a number above 0 is needed");
   }
-  if (options.iterations < 1 || options.iterations > kMostIterations) {
+  if (options.iterations < 1 || options.iterations > kMaxIterations) {
     throw_invalid("iterations: found " + std::to_string(options.iterations) +
-                  "; a number from 1 to " + std::to_string(kMostIterations) + " is needed");
+                  "; a number from 1 to " + std::to_string(kMaxIterations) + " is needed");
   }
 }
 
 MovedScan::MovedScan(const ScanView& scan, const Vector3& origin, const Progress& progress,
                      int threads)
-    : MovedScan(usable(scan, origin), progress, threads) {}
+    : MovedScan(usable_points(scan, origin), progress, threads) {}
 
 MovedScan::MovedScan(std::pair<std::vector<Vector3>, std::vector<Vector3>> points,
                      const Progress& progress, int threads)
@@ -114,7 +115,7 @@ MovedScan::MovedScan(std::pair<std::vector<Vector3>, std::vector<Vector3>> point
   std::vector<double> distances;
   Neighbors near;
   for (const std::uint32_t place : samples(kSpacingSamples)) {
-    search_.find(place, kNear, &near);
+    search_.find(place, kSpacingNeighbors, &near);
     distances.push_back(std::sqrt(near.squares().back()));
   }
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Local outlier detection: the mean neighbor distance is compared with its median over the
+// neighbors.
 #include "prefilter/points/outliers.h"
 
 #include <algorithm>
@@ -16,14 +18,15 @@
 namespace prefilter {
 namespace {
 
-constexpr int kLeast = 3;
-constexpr int kMost = 1000;
+constexpr int kMinOutlierNeighbors = 3;
+constexpr int kMaxOutlierNeighbors = 1000;
 constexpr std::int64_t kPointsPerTask = 256;
 
 void check_arguments(int neighbours, double factor) {
-  if (neighbours < kLeast || neighbours > kMost) {
+  if (neighbours < kMinOutlierNeighbors || neighbours > kMaxOutlierNeighbors) {
     throw_invalid("neighbours: found " + std::to_string(neighbours) + "; a number from " +
-                  std::to_string(kLeast) + " to " + std::to_string(kMost) + " is needed");
+                  std::to_string(kMinOutlierNeighbors) + " to " +
+                  std::to_string(kMaxOutlierNeighbors) + " is needed");
   }
   if (!(factor > 1.0) || !std::isfinite(factor)) {
     throw_invalid("factor: found " + to_text(factor) + "; a number above 1 is needed");
@@ -38,12 +41,13 @@ std::vector<bool> find_outliers(std::span<const Vector3> points, int neighbours,
   const NeighborSearch search(points, progress.part(0.0, 0.2), threads);
   const std::size_t places = search.positions().size();
   std::vector<bool> result(points.size());
-  const auto wanted = static_cast<std::size_t>(neighbours) + 1;  // a place itself is the nearest
+  // a position is its own nearest neighbor
+  const auto search_count = static_cast<std::size_t>(neighbours) + 1;
   std::vector<double> distances(places);
   const auto measure = [&](std::int64_t begin, std::int64_t end) {
     Neighbors near;
     for (auto place = static_cast<std::uint32_t>(begin); place < end; ++place) {
-      search.find(place, wanted, &near);
+      search.find(place, search_count, &near);
       double sum = 0.0;
       for (const double square : near.squares()) sum += std::sqrt(square);
       distances[place] =
@@ -55,7 +59,7 @@ std::vector<bool> find_outliers(std::span<const Vector3> points, int neighbours,
     Neighbors near;
     std::vector<double> others;
     for (auto place = static_cast<std::uint32_t>(begin); place < end; ++place) {
-      search.find(place, wanted, &near);
+      search.find(place, search_count, &near);
       others.clear();
       for (const std::uint32_t other : near.places().subspan(1)) others.push_back(distances[other]);
       const auto middle = others.begin() + static_cast<std::ptrdiff_t>((others.size() - 1) / 2);
@@ -63,7 +67,7 @@ std::vector<bool> find_outliers(std::span<const Vector3> points, int neighbours,
       is_outlier[place] = distances[place] > factor * *middle ? 1 : 0;
     }
   };
-  if (places > static_cast<std::size_t>(kLeast)) {
+  if (places > static_cast<std::size_t>(kMinOutlierNeighbors)) {
     const auto count = static_cast<std::int64_t>(places);
     parallel_ranges(count, kPointsPerTask, threads, progress.part(0.2, 0.6), measure);
     parallel_ranges(count, kPointsPerTask, threads, progress.part(0.6, 1.0), compare);

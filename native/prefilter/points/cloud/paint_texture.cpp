@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The bilinear least squares of chapter 7, with points in place of an image.
+// The bilinear least squares of chapter 7, with points instead of an image.
 #include "prefilter/points/paint_texture.h"
 
 #include <algorithm>
@@ -24,12 +24,12 @@ namespace {
 
 using System = NinePointSystem<float>;
 
-constexpr double kLargestSmoothing = 1e6;
-constexpr int kLargestSide = 1 << 16;
-constexpr double kLargestPosition = 1e150;
-constexpr float kLargestValue = 1e30F;
+constexpr double kMaxSmoothing = 1e6;
+constexpr int kMaxTextureSide = 1 << 16;
+constexpr double kMaxPaintCoordinate = 1e150;
+constexpr float kMaxPaintValue = 1e30F;
 
-// A point's place between four texel centers, and what it has there.
+// Position of a point between four texel centers, and the point's index.
 struct Sample {
   int column;
   int row;
@@ -40,7 +40,7 @@ struct Sample {
 
 void check(std::size_t points, std::size_t values, int channels, const PaintOptions& options) {
   for (const int side : {options.width, options.height}) {
-    if (side >= 1 && side <= kLargestSide) continue;
+    if (side >= 1 && side <= kMaxTextureSide) continue;
     throw_invalid("size: found " + std::to_string(options.width) + " x " +
                   std::to_string(options.height) + "; sides from 1 to 65536 are needed");
   }
@@ -49,7 +49,7 @@ void check(std::size_t points, std::size_t values, int channels, const PaintOpti
     throw_invalid("values: found " + std::to_string(values) + " for " + std::to_string(points) +
                   " points; 1 to 4 for each are needed");
   }
-  if (!(options.smoothing > 0.0 && options.smoothing <= kLargestSmoothing)) {
+  if (!(options.smoothing > 0.0 && options.smoothing <= kMaxSmoothing)) {
     throw_invalid("smoothing: found " + to_text(options.smoothing) +
                   "; a number above 0 and up to 1e6 is needed");
   }
@@ -58,19 +58,19 @@ void check(std::size_t points, std::size_t values, int channels, const PaintOpti
   }
 }
 
-// The numbers of the points that count.
-std::vector<std::size_t> usable(std::span<const Vector3> points, std::span<const float> values,
-                                std::size_t channels) {
-  std::vector<std::size_t> found;
+// Indices of the valid points.
+std::vector<std::size_t> usable_indices(std::span<const Vector3> points,
+                                        std::span<const float> values, std::size_t channels) {
+  std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < points.size(); ++i) {
     bool is_usable = true;
-    for (const double x : points[i]) is_usable = is_usable && std::abs(x) <= kLargestPosition;
+    for (const double x : points[i]) is_usable = is_usable && std::abs(x) <= kMaxPaintCoordinate;
     for (const float value : values.subspan(i * channels, channels)) {
-      is_usable = is_usable && std::abs(value) <= kLargestValue;
+      is_usable = is_usable && std::abs(value) <= kMaxPaintValue;
     }
-    if (is_usable) found.push_back(i);
+    if (is_usable) indices.push_back(i);
   }
-  return found;
+  return indices;
 }
 
 std::vector<Sample> find_samples(const Surface& surface, std::span<const Vector3> points,
@@ -93,7 +93,8 @@ std::vector<Sample> find_samples(const Surface& surface, std::span<const Vector3
     }
     const double x = u * options.width - 0.5;
     const double y = v * options.height - 0.5;
-    if (!(std::abs(x) < 1e9 && std::abs(y) < 1e9)) continue;  // of texels, no int would hold more
+    // larger texel indices do not fit an int
+    if (!(std::abs(x) < 1e9 && std::abs(y) < 1e9)) continue;
     samples.push_back({static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)),
                        static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y)),
                        chosen[k]});
@@ -109,7 +110,7 @@ System::TentProducts products_of(const std::array<float, 3>& x, const std::array
   return products;
 }
 
-// Of low x low, low x high and high x high.
+// Products of the weights low x low, low x high and high x high.
 std::array<float, 3> squares(float at) {
   return {(1.0F - at) * (1.0F - at), (1.0F - at) * at, at * at};
 }
@@ -131,7 +132,7 @@ void add_samples(const std::vector<Sample>& samples, std::span<const float> valu
   }
 }
 
-// The integral of the squared gradient over cells whose corners the surface reads.
+// Adds the integral of the squared gradient over cells whose corners the surface reads.
 void add_smoothness(const std::vector<unsigned char>& is_read, const PaintOptions& options,
                     System* system) {
   constexpr std::array<float, 3> kSlope = {1.0F, -1.0F, 1.0F};
@@ -148,7 +149,7 @@ void add_smoothness(const std::vector<unsigned char>& is_read, const PaintOption
            is_read[static_cast<std::size_t>(y) * static_cast<std::size_t>(options.width) +
                    static_cast<std::size_t>(x)] != 0;
   };
-  // Beyond an edge is another cell where the image repeats.
+  // If the image repeats, there is another cell beyond its edge.
   const int columns = options.width - (options.wrap.u == Wrap::kRepeat ? 0 : 1);
   const int rows = options.height - (options.wrap.v == Wrap::kRepeat ? 0 : 1);
   for (int row = 0; row < rows; ++row) {
@@ -161,7 +162,7 @@ void add_smoothness(const std::vector<unsigned char>& is_read, const PaintOption
   }
 }
 
-// The weight that samples have in each texel, and their means there.
+// Distributes samples to texels: total weights, and weighted means.
 Image splat(const std::vector<Sample>& samples, std::span<const float> values, int channels,
             const PaintOptions& options, std::vector<float>* weights) {
   const auto count = static_cast<std::size_t>(channels);
@@ -207,7 +208,7 @@ std::array<ValueRange, kMaxChannels> ranges_of(const std::vector<Sample>& sample
   return ranges;
 }
 
-// The texels of a system, and what is around those that have an equation. `weights` is room.
+// Solves the system, and fills the other texels. Reuses `weights`.
 Image solved(const PaintOptions& options, const SolveOptions& solving, int channels,
              std::vector<float>* weights, System* system) {
   const Progress& progress = options.progress;
@@ -233,7 +234,7 @@ PaintedTexture paint_texture(const Surface& surface, std::span<const Vector3> po
   check(points.size(), values.size(), channels, options);
   const Progress& progress = options.progress;
   const std::vector<std::size_t> chosen =
-      usable(points, values, static_cast<std::size_t>(channels));
+      usable_indices(points, values, static_cast<std::size_t>(channels));
   const std::vector<Sample> samples =
       find_samples(surface, points, chosen, options, progress.part(0.0, 0.4));
   if (samples.empty()) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Poisson-disk sampling by dart throwing in a pseudorandom order, and grid sampling.
 #include "prefilter/points/subsample.h"
 
 #include <algorithm>
@@ -19,11 +20,11 @@
 namespace prefilter {
 namespace {
 
-constexpr double kMostCells = 1e15;  // along an axis: numbers that doubles still tell apart
+constexpr double kMaxCells = 1e15;  // along an axis; larger indices are not exact in doubles
 constexpr std::int64_t kCellsPerTask = 1 << 14;
 
-// The steps of splitmix64 (Steele et al. 2014): numbers that look random, each once.
-std::uint64_t scrambled(std::uint64_t number) {
+// splitmix64 (Steele et al. 2014): a bijective scrambling.
+std::uint64_t scramble(std::uint64_t number) {
   number += 0x9E3779B97F4A7C15U;
   number = (number ^ (number >> 30)) * 0xBF58476D1CE4E5B9U;
   number = (number ^ (number >> 27)) * 0x94D049BB133111EBU;
@@ -33,12 +34,12 @@ std::uint64_t scrambled(std::uint64_t number) {
 void check_spacing(double spacing, const Box& box) {
   double extent = 0.0;
   for (int a = 0; a < 3; ++a) extent = std::max(extent, box.size(a));
-  if (spacing > 0.0 && std::isfinite(spacing) && extent / spacing < kMostCells) return;
+  if (spacing > 0.0 && std::isfinite(spacing) && extent / spacing < kMaxCells) return;
   throw_invalid("spacing: found " + to_text(spacing) + "; a number above " +
-                to_text(std::max(extent, 0.0) / kMostCells) + " is needed");
+                to_text(std::max(extent, 0.0) / kMaxCells) + " is needed");
 }
 
-// The first point at each place.
+// The first point at each distinct position.
 std::vector<std::int64_t> first_points(const NeighborSearch& search) {
   std::vector<std::int64_t> first(search.positions().size());
   const std::span<const std::uint32_t> places = search.places();
@@ -48,32 +49,32 @@ std::vector<std::int64_t> first_points(const NeighborSearch& search) {
   return first;
 }
 
-struct Turn {
+struct RandomRank {
   std::uint64_t number = 0;
   std::uint32_t place = 0;
-  bool operator<(const Turn& other) const { return number < other.number; }
+  bool operator<(const RandomRank& other) const { return number < other.number; }
 };
 
-// Dart throwing: each position in turn is kept, and takes out all that are too near.
+// Dart throwing: each position in turn is kept, and removes all positions that are too near.
 std::vector<std::int64_t> poisson_points(const NeighborSearch& search, double spacing,
                                          const Progress& progress, int threads) {
   const std::span<const Vector3> positions = search.positions();
-  std::vector<Turn> turns(positions.size());
-  for (std::uint32_t place = 0; place < turns.size(); ++place) {
-    turns[place] = {scrambled(place), place};
+  std::vector<RandomRank> ranks(positions.size());
+  for (std::uint32_t place = 0; place < ranks.size(); ++place) {
+    ranks[place] = {scramble(place), place};
   }
-  sort_in_parallel(&turns, progress.part(0.0, 0.1), threads);
+  sort_in_parallel(&ranks, progress.part(0.0, 0.1), threads);
   const std::vector<std::int64_t> first = first_points(search);
   std::vector<bool> is_out(positions.size());
   std::vector<std::int64_t> kept;
   const double square = spacing * spacing;
   constexpr std::size_t kPerReport = 1 << 10;
   const Progress rest = progress.part(0.1, 1.0);
-  for (std::size_t t = 0; t < turns.size(); ++t) {
+  for (std::size_t t = 0; t < ranks.size(); ++t) {
     if (t % kPerReport == 0) {
-      rest.report(static_cast<double>(t) / static_cast<double>(turns.size()));
+      rest.report(static_cast<double>(t) / static_cast<double>(ranks.size()));
     }
-    const std::uint32_t place = turns[t].place;
+    const std::uint32_t place = ranks[t].place;
     if (is_out[place]) continue;
     kept.push_back(first[place]);
     search.for_near(positions[place], square, [&](std::uint32_t near) { is_out[near] = true; });
@@ -89,7 +90,7 @@ struct CellPoint {
   }
 };
 
-// The point of a cell that is nearest to the mean of all of them.
+// The point of a cell nearest to the mean of the cell.
 std::int64_t central_point(std::span<const Vector3> points, std::span<const CellPoint> cell) {
   const Vector3 origin = points[static_cast<std::size_t>(cell.front().index)];
   Vector3 mean{};
@@ -97,16 +98,16 @@ std::int64_t central_point(std::span<const Vector3> points, std::span<const Cell
     mean = mean + (points[static_cast<std::size_t>(each.index)] - origin);
   }
   mean = origin + 1.0 / static_cast<double>(cell.size()) * mean;
-  std::int64_t found = cell.front().index;
+  std::int64_t nearest = cell.front().index;
   double least = std::numeric_limits<double>::infinity();
   for (const CellPoint& each : cell) {
     const Vector3 offset = points[static_cast<std::size_t>(each.index)] - mean;
     if (const double square = dot(offset, offset); square < least) {
       least = square;
-      found = each.index;
+      nearest = each.index;
     }
   }
-  return found;
+  return nearest;
 }
 
 std::vector<std::int64_t> grid_points(std::span<const Vector3> points, const NeighborSearch& search,

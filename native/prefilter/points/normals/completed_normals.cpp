@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Fits planes to neighbors, and grows the region of known normals in rounds.
 #include "prefilter/points/completed_normals.h"
 
 #include <cstdint>
@@ -17,9 +18,9 @@ namespace {
 
 constexpr std::int64_t kMissingPerTask = 256;
 
-// The normal on the side that known normals around it are on; zero where there are none.
-Vector3 turned_normal(const NeighborSearch& search, std::uint32_t place, std::size_t neighbors,
-                      std::span<const Vector3> known, Neighbors* near) {
+// The fitted normal, oriented by the known normals around it; zero if there are none.
+Vector3 oriented_normal(const NeighborSearch& search, std::uint32_t place, std::size_t neighbors,
+                        std::span<const Vector3> known, Neighbors* near) {
   const std::span<const Vector3> positions = search.positions();
   search.find(place, neighbors, near);
   bool is_reached = false;
@@ -49,7 +50,7 @@ std::vector<Vector3> completed_normals(std::span<const Vector3> points,
     const std::uint32_t place = search.places()[i];
     if (place == NeighborSearch::kNowhere) continue;
     const Vector3 normal = unit_or_zero(normals[i]);
-    if (normal != Vector3{}) known[place] = normal;  // at last of the first of several
+    if (normal != Vector3{}) known[place] = normal;  // the first of several coincident points wins
   }
   std::vector<std::uint32_t> missing;
   for (std::uint32_t place = 0; place < known.size(); ++place) {
@@ -57,24 +58,24 @@ std::vector<Vector3> completed_normals(std::span<const Vector3> points,
   }
   const auto whole = static_cast<double>(missing.size());
   double done = 0.3;
-  // Each round looks at what was known before it, so that the order does not count.
+  // Each round uses only the normals known before it, so that the order does not matter.
   while (!missing.empty()) {
-    std::vector<Vector3> found(missing.size());
+    std::vector<Vector3> estimates(missing.size());
     const double end = done + 0.7 * (1.0 - done) * static_cast<double>(missing.size()) / whole;
     parallel_ranges(static_cast<std::int64_t>(missing.size()), kMissingPerTask, threads,
                     progress.part(done, end), [&](std::int64_t first, std::int64_t last) {
                       Neighbors near;
                       for (auto i = static_cast<std::size_t>(first);
                            i < static_cast<std::size_t>(last); ++i) {
-                        found[i] = turned_normal(
+                        estimates[i] = oriented_normal(
                             search, missing[i], static_cast<std::size_t>(neighbours), known, &near);
                       }
                     });
     done = end;
     std::vector<std::uint32_t> left;
     for (std::size_t i = 0; i < missing.size(); ++i) {
-      known[missing[i]] = found[i];
-      if (found[i] == Vector3{}) left.push_back(missing[i]);
+      known[missing[i]] = estimates[i];
+      if (estimates[i] == Vector3{}) left.push_back(missing[i]);
     }
     if (left.size() == missing.size()) break;
     missing = std::move(left);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Orients given normals by orient_normals, with links to the nearest neighbors.
 #include "prefilter/points/directed_normals.h"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kPointsPerTask = 256;
-constexpr std::size_t kLinks = 8;  // as many as estimate_normals has by default
+constexpr std::size_t kDirectionLinks = 8;  // the default of estimate_normals
 
 }  // namespace
 
@@ -40,26 +41,27 @@ std::vector<Vector3> directed_normals(std::span<const Vector3> points,
     if (place == NeighborSearch::kNowhere) {
       result[i] = {};
     } else if (result[i] != Vector3{}) {
-      at_places[place] = result[i];  // at last of the first of several
+      at_places[place] = result[i];  // the first of several coincident points wins
     }
   }
   std::vector<double> areas(positions.size());
-  std::vector<std::uint32_t> links(positions.size() * kLinks);
+  std::vector<std::uint32_t> links(positions.size() * kDirectionLinks);
   const auto link = [&](std::int64_t begin, std::int64_t end) {
     Neighbors near;
     for (auto place = static_cast<std::uint32_t>(begin); place < end; ++place) {
-      search.find(place, 2 * kLinks, &near);
+      search.find(place, 2 * kDirectionLinks, &near);
       areas[place] = near.squares().back();
-      for (std::size_t s = 0; s < kLinks; ++s) {
-        links[place * kLinks + s] = near.places()[std::min(s + 1, near.places().size() - 1)];
+      for (std::size_t s = 0; s < kDirectionLinks; ++s) {
+        links[place * kDirectionLinks + s] =
+            near.places()[std::min(s + 1, near.places().size() - 1)];
       }
     }
   };
   parallel_ranges(static_cast<std::int64_t>(positions.size()), kPointsPerTask, threads,
                   progress.part(0.3, 0.6), link);
   std::vector<Vector3> directed = at_places;
-  orient_normals({positions, areas, kLinks, links}, NormalSide::kOutward, progress.part(0.6, 1.0),
-                 threads, &directed);
+  orient_normals({positions, areas, kDirectionLinks, links}, NormalSide::kOutward,
+                 progress.part(0.6, 1.0), threads, &directed);
   for (std::size_t i = 0; i < result.size(); ++i) {
     const std::uint32_t place = search.places()[i];
     if (place == NeighborSearch::kNowhere) continue;

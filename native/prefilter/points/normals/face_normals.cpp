@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Normals by area, and the weights of Curless and Levoy, A Volumetric Method for Building Complex
+// Models from Range Images (1996).
 #include "prefilter/points/face_normals.h"
 
 #include <algorithm>
@@ -14,8 +16,8 @@
 namespace prefilter {
 namespace {
 
-constexpr double kLongestEdge = 4.0;  // times the median
-constexpr int kBorder = 6;            // places over which weights fall
+constexpr double kMaxEdgeRatio = 4.0;  // multiples of the median
+constexpr int kBorderSteps = 6;        // grid cells over which weights fall off
 
 using Triangle = std::array<std::int64_t, 3>;
 
@@ -27,10 +29,10 @@ Vector3 unit_or_none(const Vector3& v) {
   return {v[0] / size, v[1] / size, v[2] / size};
 }
 
-// A grid of points that exist, and where its surface ends.
-class Grid {
+// A range grid with valid indices, and its triangles.
+class ScanGrid {
  public:
-  Grid(std::span<const Vector3> points, const RangeGrid& grid) : points_(points), grid_(grid) {
+  ScanGrid(std::span<const Vector3> points, const RangeGrid& grid) : points_(points), grid_(grid) {
     const bool is_whole =
         grid.rows >= 0 && grid.columns >= 0 &&
         static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.columns) ==
@@ -57,7 +59,7 @@ class Grid {
     return points_[static_cast<std::size_t>(point)];
   }
 
-  // The median distance of neighbors in rows and columns; 0 where there are none.
+  // Median distance of neighbors in rows and columns; 0 if there are none.
   double spacing(const Progress& progress) const {
     std::vector<double> lengths;
     CancelCheck cancel_check(progress);
@@ -75,14 +77,14 @@ class Grid {
     return *middle;
   }
 
-  // The triangles of the cell whose first corner this is: two, or one where a corner is missing or
-  // far away, or none. They go round from columns to rows.
+  // The triangles of the cell whose first corner this is: two, or fewer if a corner is missing or
+  // too far. They wind from columns to rows.
   int triangles(std::int64_t row, std::int64_t column, double longest,
-                std::array<Triangle, 2>* found) const {
+                std::array<Triangle, 2>* triangles_of_cell) const {
     const std::array<std::int64_t, 4> corners = {point(row, column), point(row, column + 1),
                                                  point(row + 1, column + 1),
                                                  point(row + 1, column)};
-    // Along the shorter diagonal; where a corner is missing, beside it.
+    // Splits the cell along its shorter diagonal, or beside a missing corner.
     const double first = gap(corners[0], corners[2]);
     const double second = gap(corners[1], corners[3]);
     const std::size_t turn = first <= second ? 0 : 1;
@@ -93,40 +95,41 @@ class Grid {
       const bool is_near = gap(triangle[0], triangle[1]) <= longest &&
                            gap(triangle[1], triangle[2]) <= longest &&
                            gap(triangle[2], triangle[0]) <= longest;
-      if (is_near) (*found)[static_cast<std::size_t>(count++)] = triangle;
+      if (is_near) (*triangles_of_cell)[static_cast<std::size_t>(count++)] = triangle;
     }
     return count;
   }
 
  private:
-  // Infinite where a point is missing or not finite.
+  // Distance of two points; infinite if one is missing or not finite.
   double gap(std::int64_t a, std::int64_t b) const {
     if (a < 0 || b < 0) return std::numeric_limits<double>::infinity();
-    const double found = distance(position(a), position(b));
-    return std::isfinite(found) ? found : std::numeric_limits<double>::infinity();
+    const double size = distance(position(a), position(b));
+    return std::isfinite(size) ? size : std::numeric_limits<double>::infinity();
   }
 
   void add_length(std::int64_t a, std::int64_t b, std::vector<double>* lengths) const {
-    const double found = gap(a, b);
-    if (std::isfinite(found)) lengths->push_back(found);
+    const double size = gap(a, b);
+    if (std::isfinite(size)) lengths->push_back(size);
   }
 
   std::span<const Vector3> points_;
   const RangeGrid& grid_;
 };
 
-// Of each place, how many steps it is from where the surface ends, up to kBorder.
+// Distance of each grid position from the end of the surface, in steps up to kBorderSteps: two
+// passes of a chamfer distance transform.
 std::vector<std::int8_t> steps_to_end(std::int64_t rows, std::int64_t columns,
                                       const std::vector<bool>& is_end, const Progress& progress) {
   std::vector<std::int8_t> steps(is_end.size());
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    steps[i] = is_end[i] ? 0 : static_cast<std::int8_t>(kBorder);
+    steps[i] = is_end[i] ? 0 : static_cast<std::int8_t>(kBorderSteps);
   }
   CancelCheck cancel_check(progress);
-  const auto look = [&](std::int64_t row, std::int64_t column, std::int64_t along) {
+  const auto update = [&](std::int64_t row, std::int64_t column, std::int64_t along) {
     cancel_check.step();
     std::int8_t& own = steps[static_cast<std::size_t>(row * columns + column)];
-    // The neighbors that were visited before: one of this row, three of the last.
+    // The neighbors visited before: one in this row, three in the previous row.
     const std::array<std::array<std::int64_t, 2>, 4> before = {{{row, column - along},
                                                                 {row - along, column - 1},
                                                                 {row - along, column},
@@ -138,10 +141,10 @@ std::vector<std::int8_t> steps_to_end(std::int64_t rows, std::int64_t columns,
     }
   };
   for (std::int64_t row = 0; row < rows; ++row) {
-    for (std::int64_t column = 0; column < columns; ++column) look(row, column, 1);
+    for (std::int64_t column = 0; column < columns; ++column) update(row, column, 1);
   }
   for (std::int64_t row = rows; row-- > 0;) {
-    for (std::int64_t column = columns; column-- > 0;) look(row, column, -1);
+    for (std::int64_t column = columns; column-- > 0;) update(row, column, -1);
   }
   return steps;
 }
@@ -175,19 +178,19 @@ std::vector<Vector3> mesh_normals(const InputMesh& mesh, const Progress& progres
 GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
                          const std::optional<Vector3>& viewpoint, const Progress& progress) {
   if (viewpoint) check_points(std::span(&*viewpoint, 1), "viewpoint: row", kLargestCoordinate);
-  const Grid places(points, grid);
-  const double longest = kLongestEdge * places.spacing(progress);
+  const ScanGrid places(points, grid);
+  const double longest = kMaxEdgeRatio * places.spacing(progress);
   std::vector<Triangle> triangles;
-  // A place is at the end where one of the cells around it is not whole.
+  // A position is at the end of the surface unless all four cells around it are complete.
   std::vector<bool> is_end(grid.points.size(), true);
   std::vector<std::uint8_t> whole_cells(grid.points.size());
   CancelCheck cancel_check(progress);
   for (std::int64_t row = 0; row + 1 < places.rows(); ++row) {
     for (std::int64_t column = 0; column + 1 < places.columns(); ++column) {
       cancel_check.step();
-      std::array<Triangle, 2> found;
-      const int count = places.triangles(row, column, longest, &found);
-      triangles.insert(triangles.end(), found.begin(), found.begin() + count);
+      std::array<Triangle, 2> cell_triangles;
+      const int count = places.triangles(row, column, longest, &cell_triangles);
+      triangles.insert(triangles.end(), cell_triangles.begin(), cell_triangles.begin() + count);
       if (count < 2) continue;
       const auto first = static_cast<std::size_t>(row * places.columns() + column);
       const auto below = first + static_cast<std::size_t>(places.columns());
@@ -201,12 +204,12 @@ GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
   const auto toward = [&](std::size_t i) {
     return viewpoint ? unit_or_none(*viewpoint - points[i]) : Vector3{0.0, 0.0, 1.0};
   };
-  double shown = 0.0;
+  double visible = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     cancel_check.step();
-    if (result.normals[i] != Vector3{}) shown += dot(result.normals[i], toward(i));
+    if (result.normals[i] != Vector3{}) visible += dot(result.normals[i], toward(i));
   }
-  if (shown < 0.0) {
+  if (visible < 0.0) {
     for (Vector3& normal : result.normals) normal = Vector3{} - normal;
   }
   const std::vector<std::int8_t> steps =
@@ -218,7 +221,7 @@ GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
     const auto i = static_cast<std::size_t>(grid.points[place]);
     if (result.normals[i] == Vector3{}) continue;
     const double cosine = std::clamp(dot(result.normals[i], toward(i)), 0.0, 1.0);
-    result.weights[i] = static_cast<float>(cosine * (steps[place] + 1) / (kBorder + 1));
+    result.weights[i] = static_cast<float>(cosine * (steps[place] + 1) / (kBorderSteps + 1));
   }
   progress.report(1.0);
   return result;

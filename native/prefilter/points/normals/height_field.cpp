@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Divides x and y into cells, fits a plane to each, and counts cells with a single sheet, two
+// sheets, or a wall.
 #include "prefilter/points/height_field.h"
 
 #include <algorithm>
@@ -9,41 +11,42 @@
 #include <vector>
 
 #include "prefilter/base/cancel_check.h"
-#include "prefilter/points/normals/some_points.h"
+#include "prefilter/points/normals/sampled_positions.h"
 
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kLeastPoints = 100;
-constexpr std::size_t kMostPoints = std::size_t{1} << 20;
+constexpr std::size_t kMinHeightPoints = 100;
+constexpr std::size_t kMaxHeightPoints = std::size_t{1} << 20;
 constexpr double kPointsPerCell = 16.0;
-constexpr std::size_t kLeastInCell = 6;
-// Cells per side, at the least: fewer say little about a shape.
-constexpr double kLeastCells = 3.0;
-// Of the points: in cells that hold no single sheet, at the most, and in cells that tell.
-constexpr double kMostElsewhere = 0.3;
-constexpr double kLeastTold = 0.5;
-// Noise is thicker than fine cells are wide, and looks like a wall in them.
+constexpr std::size_t kMinPointsInCell = 6;
+// Minimum number of cells per side.
+constexpr double kMinCellsPerSide = 3.0;
+// Largest fraction of points in cells without a single sheet, and smallest fraction in cells with
+// enough points.
+constexpr double kMaxOtherShare = 0.3;
+constexpr double kMinClassifiedShare = 0.5;
+// Number of cell sizes, each twice the last: noise thicker than fine cells looks like walls.
 constexpr int kScales = 3;
-// Deviations from the plane of a cell, in sides of it: what is less is a rough sheet; two sheets
-// that are as far apart as 0.7 sides deviate by half of that. More is steep: a wall.
-constexpr double kRough = 0.35;
-constexpr double kSteep = 1.0;
-// The share of the variance that two heights instead of one leave out: 3/4 for a wall, which is
-// even, 2/3 for noise, all of it for two sheets.
-constexpr double kTwoSheets = 0.85;
+// Standard deviation from a cell's plane, in cell sides. Below kMinLayeredDeviation it is a rough
+// single sheet: two sheets 0.7 sides apart deviate by 0.35. Above kMinWallDeviation it is a wall.
+constexpr double kMinLayeredDeviation = 0.35;
+constexpr double kMinWallDeviation = 1.0;
+// Fraction of the variance that two heights explain: 3/4 for a uniform wall, 2/3 for noise, all of
+// it for two sheets.
+constexpr double kMinTwoSheetShare = 0.85;
 
-// A point in the cell that its key names.
-struct Placed {
+// A point with the key of its cell.
+struct KeyedPoint {
   std::uint64_t key;
   Vector3 point;
 
-  bool operator<(const Placed& other) const {
+  bool operator<(const KeyedPoint& other) const {
     return key != other.key ? key < other.key : point < other.point;
   }
 };
 
-// Where the middle 98 % of values begin, and how far they reach.
+// Range of the middle 98 % of values.
 struct Range {
   double low = 0.0;
   double size = 0.0;
@@ -63,15 +66,14 @@ Range range_along(std::span<const Vector3> points, std::size_t axis) {
   return {low, at(points.size() - 1 - edge) - low};
 }
 
-// Heights above the plane that fits points best, as z over x and y, in sides of the cell, from
-// least to most.
-std::vector<double> heights_over_plane(std::span<const Placed> cell, double side) {
+// Sorted distances along z from the least-squares plane over x and y, in cell sides.
+std::vector<double> heights_over_plane(std::span<const KeyedPoint> cell, double side) {
   const auto count = static_cast<double>(cell.size());
   std::vector<Vector3> offsets;
   Vector3 mean{};
-  for (const Placed& one : cell) {
-    // From a point of the cell: neither far away nor tiny.
-    Vector3 offset = one.point - cell.front().point;
+  for (const KeyedPoint& keyed_point : cell) {
+    // Relative to a point of the cell, so that offsets are neither large nor tiny.
+    Vector3 offset = keyed_point.point - cell.front().point;
     for (double& x : offset) x /= side;
     offsets.push_back(offset);
     mean = mean + (1.0 / count) * offset;
@@ -102,8 +104,7 @@ std::vector<double> heights_over_plane(std::span<const Placed> cell, double side
   return heights;
 }
 
-// The share of the variance of sorted values of mean zero that is between two groups of them, at
-// the most.
+// Largest fraction of the variance of sorted values of mean 0 that lies between two groups of them.
 double share_between_two(std::span<const double> values, double squares) {
   const auto count = static_cast<double>(values.size());
   double sum = 0.0;
@@ -116,65 +117,66 @@ double share_between_two(std::span<const double> values, double squares) {
   return best / squares;
 }
 
-// What the cells of one size say of the points in them.
-struct CellFindings {
-  std::size_t told = 0;
+// Numbers of points in cells of one size, by what their cell looks like.
+struct CellCounts {
+  std::size_t classified = 0;
   std::size_t layered = 0;
   std::size_t steep = 0;
 };
 
-void look_at_cell(std::span<const Placed> cell, double side, CellFindings* found) {
-  if (cell.size() < kLeastInCell) return;
-  found->told += cell.size();
+void classify_cell(std::span<const KeyedPoint> cell, double side, CellCounts* counts) {
+  if (cell.size() < kMinPointsInCell) return;
+  counts->classified += cell.size();
   const std::vector<double> heights = heights_over_plane(cell, side);
   double squares = 0.0;
   for (const double height : heights) squares += height * height;
   const double deviation = std::sqrt(squares / static_cast<double>(cell.size()));
-  if (deviation > kRough && share_between_two(heights, squares) > kTwoSheets) {
-    found->layered += cell.size();
-  } else if (deviation > kSteep) {
-    found->steep += cell.size();
+  if (deviation > kMinLayeredDeviation && share_between_two(heights, squares) > kMinTwoSheetShare) {
+    counts->layered += cell.size();
+  } else if (deviation > kMinWallDeviation) {
+    counts->steep += cell.size();
   }
 }
 
-CellFindings look_at_cells(std::span<const Vector3> points, const Range& x, const Range& y,
-                           double side, CancelCheck* cancel_check) {
+CellCounts classify_cells(std::span<const Vector3> points, const Range& x, const Range& y,
+                          double side, CancelCheck* cancel_check) {
   const auto index = [side](double value, const Range& range) {
-    // What is far outside is in the cells of the border.
+    // Far outliers are counted in the border cells.
     const double last = std::floor(range.size / side) + 2.0;
     return static_cast<std::uint64_t>(
         std::clamp(std::floor((value - range.low) / side) + 1.0, 0.0, last));
   };
-  std::vector<Placed> placed;
-  placed.reserve(points.size());
-  for (const Vector3& p : points) placed.push_back({index(p[0], x) << 32U | index(p[1], y), p});
-  std::sort(placed.begin(), placed.end());
-  CellFindings found;
-  for (std::size_t begin = 0, end = 0; begin < placed.size(); begin = end) {
-    while (end < placed.size() && placed[end].key == placed[begin].key) ++end;
+  std::vector<KeyedPoint> keyed;
+  keyed.reserve(points.size());
+  for (const Vector3& p : points) keyed.push_back({index(p[0], x) << 32U | index(p[1], y), p});
+  std::sort(keyed.begin(), keyed.end());
+  CellCounts counts;
+  for (std::size_t begin = 0, end = 0; begin < keyed.size(); begin = end) {
+    while (end < keyed.size() && keyed[end].key == keyed[begin].key) ++end;
     for (std::size_t i = begin; i < end; ++i) cancel_check->step();
-    look_at_cell(std::span(placed).subspan(begin, end - begin), side, &found);
+    classify_cell(std::span(keyed).subspan(begin, end - begin), side, &counts);
   }
-  return found;
+  return counts;
 }
 
 }  // namespace
 
 bool is_height_field(std::span<const Vector3> all, const Progress& progress) {
-  const std::vector<Vector3> points = some_points(all, kMostPoints);
-  if (points.size() < kLeastPoints) return false;
+  const std::vector<Vector3> points = sample_positions(all, kMaxHeightPoints);
+  if (points.size() < kMinHeightPoints) return false;
   const Range x = range_along(points, 0);
   const Range y = range_along(points, 1);
   const auto count = static_cast<double>(points.size());
   double side = std::sqrt(x.size / count) * std::sqrt(kPointsPerCell * y.size);
   CancelCheck cancel_check(progress);
   for (int scale = 0; scale < kScales; ++scale, side *= 2.0) {
-    if (!(side > 0.0 && kLeastCells * side <= std::min(x.size, y.size))) return false;
-    const CellFindings found = look_at_cells(points, x, y, side, &cancel_check);
-    const auto told = static_cast<double>(found.told);
-    if (told < kLeastTold * count) continue;
-    if (static_cast<double>(found.layered) > kMostElsewhere * told) return false;
-    if (static_cast<double>(found.layered + found.steep) <= kMostElsewhere * told) return true;
+    if (!(side > 0.0 && kMinCellsPerSide * side <= std::min(x.size, y.size))) return false;
+    const CellCounts counts = classify_cells(points, x, y, side, &cancel_check);
+    const auto classified = static_cast<double>(counts.classified);
+    if (classified < kMinClassifiedShare * count) continue;
+    if (static_cast<double>(counts.layered) > kMaxOtherShare * classified) return false;
+    if (static_cast<double>(counts.layered + counts.steep) <= kMaxOtherShare * classified)
+      return true;
   }
   return false;
 }

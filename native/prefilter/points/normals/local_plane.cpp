@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Eberly, A Robust Eigensolver for 3 x 3 Symmetric Matrices (2014): without iterations. The
-// eigenvalue that is farther from the other two gives its eigenvector as a cross product of rows;
-// the others are found across it.
+// Eberly, A Robust Eigensolver for 3 x 3 Symmetric Matrices (2014), without iterations. The
+// eigenvalue farthest from the other two gives its eigenvector as a cross product of rows; the
+// others are found orthogonal to it.
 #include "prefilter/points/normals/local_plane.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ Vector3 scaled(const Vector3& v, double scale) {
   return {v[0] * scale, v[1] * scale, v[2] * scale};
 }
 
-// The direction that the matrix, less the eigenvalue, maps to zero: across its rows.
+// Null direction of the matrix minus the eigenvalue: orthogonal to all rows.
 Vector3 null_direction(const SymmetricMatrix& m, double eigenvalue) {
   const Vector3 rows[3] = {{m.xx - eigenvalue, m.xy, m.xz},
                            {m.xy, m.yy - eigenvalue, m.yz},
@@ -42,7 +42,7 @@ double product(const Vector3& a, const SymmetricMatrix& m, const Vector3& b) {
          a[2] * (m.xz * b[0] + m.yz * b[1] + m.zz * b[2]);
 }
 
-// The eigenvector of the least eigenvalue among those across another eigenvector.
+// Eigenvector of the least eigenvalue among those orthogonal to another eigenvector.
 Vector3 least_across(const SymmetricMatrix& m, const Vector3& other) {
   const bool is_steep = std::abs(other[2]) > 0.9;
   Vector3 u = cross(other, is_steep ? Vector3{1.0, 0.0, 0.0} : Vector3{0.0, 0.0, 1.0});
@@ -51,7 +51,7 @@ Vector3 least_across(const SymmetricMatrix& m, const Vector3& other) {
   const double uu = product(u, m, u);
   const double vv = product(v, m, v);
   const double uv = product(u, m, v);
-  // Half of the angle of (uu - vv, 2 uv) is that of the greatest eigenvalue.
+  // The eigenvector of the greatest eigenvalue is at half the angle of (uu - vv, 2 uv).
   const double angle = 0.5 * elementary::atan2(2.0 * uv, uu - vv);
   const Vector3 along_u = scaled(u, -elementary::sin(angle));
   return along_u + scaled(v, elementary::cos(angle));
@@ -113,7 +113,7 @@ double flatness(const SymmetricMatrix& m, const Vector3& least) {
   const double eigenvalue = product(least, m, least);
   const double sum = m.xx + m.yy + m.zz - eigenvalue;
   if (!(sum > 0.0)) return 0.0;
-  // Shares of the sum, whose products do not overflow.
+  // Normalized by the sum, so that products do not overflow.
   const double xx = m.xx / sum;
   const double xy = m.xy / sum;
   const double xz = m.xz / sum;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The plane that fits points best.
+// Best-fitting plane of points.
 #pragma once
 
 #include <cstdint>
@@ -30,21 +30,21 @@ struct SymmetricMatrix {
   }
 };
 
-/// The vector, 1 long; zero for one that is zero or not finite.
+/// The vector scaled to length 1; zero for a vector that is zero or not finite.
 Vector3 unit_or_zero(const Vector3& vector);
 
-/// The covariance of the neighbors of a position, around their mean; near ones count up to twice as
-/// much as far ones.
+/// Covariance matrix of a position's neighbors around their mean. Weights decrease from 1 at the
+/// position to 1/2 at the farthest neighbor.
 SymmetricMatrix covariance(std::span<const Vector3> positions, std::uint32_t place,
                            const Neighbors& near);
 
-/// The eigenvector, 1 long, of the least eigenvalue of a finite matrix: of the covariance of
-/// points, the normal of the plane that fits them best. Where several do, one of them; zero for a
-/// matrix of zeros.
+/// Unit eigenvector of the least eigenvalue of a finite matrix; for a covariance matrix, the normal
+/// of the best-fitting plane. Any of them if there are several; zero for a zero matrix.
 Vector3 least_eigenvector(const SymmetricMatrix& matrix);
 
-/// Of the other two eigenvalues of a covariance, the lesser one as a share of both, roughly: 0 for
-/// points on a line, 1/4 for a disc. `least` is what least_eigenvector returned.
+/// Ratio of the middle eigenvalue of a covariance matrix to the sum of the two largest,
+/// approximately: 0 for points on a line, 1/4 for a disc. `least` is the result of
+/// least_eigenvector.
 double flatness(const SymmetricMatrix& matrix, const Vector3& least);
 
 }  // namespace prefilter

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Principal component analysis of neighborhoods, as Hoppe et al., Surface Reconstruction from
+// Unorganized Points (1992).
 #include "prefilter/points/normals.h"
 
 #include <algorithm>
@@ -18,22 +20,22 @@ namespace {
 
 constexpr std::int64_t kPlanesPerTask = 256;
 constexpr std::int64_t kRowsPerTask = 1 << 15;
-// More neighbors hardly change which side a normal is on, and take time.
-constexpr std::size_t kMostLinks = 8;
-// The neighbors' standard deviations along and across a line are about as 10 to 1.
-constexpr double kLine = 0.01;
-// How many times as many neighbors are taken, at the most, where they lie along a line.
-constexpr std::size_t kMostGrowth = 8;
+// More links hardly change orientations, and take time.
+constexpr std::size_t kMaxLinks = 8;
+// Flatness of neighbors along a line: standard deviations in the ratio 10 to 1.
+constexpr double kMaxLineFlatness = 0.01;
+// Largest factor by which the number of neighbors grows if they lie along a line.
+constexpr std::size_t kMaxGrowth = 8;
 
 Vector3 reversed(const Vector3& normal) { return Vector3{} - normal; }
 
 void check_arguments(std::span<const Vector3> points, int neighbours,
                      std::span<const Vector3> viewpoints) {
   if (points.empty()) throw_invalid("points: none; at least one is needed");
-  if (neighbours < kLeastNeighbors || neighbours > kMostNeighbors) {
+  if (neighbours < kMinNormalNeighbors || neighbours > kMaxNormalNeighbors) {
     throw_invalid("neighbours: found " + std::to_string(neighbours) + "; a number from " +
-                  std::to_string(kLeastNeighbors) + " to " + std::to_string(kMostNeighbors) +
-                  " is needed");
+                  std::to_string(kMinNormalNeighbors) + " to " +
+                  std::to_string(kMaxNormalNeighbors) + " is needed");
   }
   if (viewpoints.size() > 1 && viewpoints.size() != points.size()) {
     throw_invalid("viewpoint: found " + std::to_string(viewpoints.size()) + " for " +
@@ -42,12 +44,12 @@ void check_arguments(std::span<const Vector3> points, int neighbours,
   check_points(viewpoints, "viewpoint: row", kLargestCoordinate);
 }
 
-// What is estimated for each distinct position.
+// Estimates for each distinct position.
 struct LocalPlanes {
   std::vector<Vector3> normals;
   std::vector<double> areas;
   std::size_t degree = 0;
-  std::vector<std::uint32_t> links;  // `degree` neighbors for each
+  std::vector<std::uint32_t> links;  // `degree` neighbors of each
 };
 
 LocalPlanes fit_planes(const NeighborSearch& search, std::size_t neighbors, std::size_t degree,
@@ -70,8 +72,8 @@ LocalPlanes fit_planes(const NeighborSearch& search, std::size_t neighbors, std:
       }
       SymmetricMatrix matrix = covariance(positions, place, near);
       Vector3 normal = least_eigenvector(matrix);
-      for (std::size_t growth = 2; growth <= kMostGrowth && flatness(matrix, normal) < kLine;
-           growth *= 2) {
+      for (std::size_t growth = 2;
+           growth <= kMaxGrowth && flatness(matrix, normal) < kMaxLineFlatness; growth *= 2) {
         if (near.places().size() < neighbors) break;
         search.find(place, growth * neighbors, &near);
         matrix = covariance(positions, place, near);
@@ -95,9 +97,9 @@ std::vector<Vector3> estimate_normals(std::span<const Vector3> points, int neigh
   const NeighborSearch search(points, progress.part(0.0, 0.2), threads);
   const std::span<const Vector3> positions = search.positions();
   if (positions.size() < 3) return result;
-  const auto wanted = static_cast<std::size_t>(neighbours);
-  const std::size_t degree = viewpoints.empty() ? std::min(wanted - 1, kMostLinks) : 0;
-  LocalPlanes planes = fit_planes(search, wanted, degree, progress.part(0.2, 0.8), threads);
+  const auto neighbor_count = static_cast<std::size_t>(neighbours);
+  const std::size_t degree = viewpoints.empty() ? std::min(neighbor_count - 1, kMaxLinks) : 0;
+  LocalPlanes planes = fit_planes(search, neighbor_count, degree, progress.part(0.2, 0.8), threads);
   if (viewpoints.empty()) {
     orient_normals({positions, planes.areas, planes.degree, planes.links}, side,
                    progress.part(0.8, 0.95), threads, &planes.normals);

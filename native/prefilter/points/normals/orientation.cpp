@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Propagation of directions as in Hoppe et al., Surface Reconstruction from Unorganized Points
-// (1992), by patches instead of points: near points whose normals leave no doubt are joined first,
-// and then patch by patch, by the sum of what all pairs along their common border say.
+// Propagates orientations as Hoppe et al., Surface Reconstruction from Unorganized Points (1992),
+// between patches instead of points: neighbors with unambiguous normals are joined first, then
+// patches by the sum of votes of all pairs along their common border.
 #include "prefilter/points/normals/orientation.h"
 
 #include <algorithm>
@@ -18,17 +18,17 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kNormalsPerTask = 1 << 12;
-// Agreements are whole numbers up to this, so that their sums do not depend on the order.
+// Agreements are integers up to this value, so that sums do not depend on the order.
 constexpr int kFullAgreement = 1023;
-constexpr int kNoDoubt = 992;  // 0.97
+constexpr int kUnambiguousAgreement = 992;  // 0.97
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-// Sets of normals whose directions are known with respect to each other.
+// Disjoint sets of normals with known relative orientations.
 class SignedSets {
  public:
   struct Member {
     std::uint32_t set;
-    std::uint32_t is_reversed;  // with respect to the one that the set is named after: 1 or 0
+    std::uint32_t is_reversed;  // 1 if reversed relative to the set's root, otherwise 0
   };
 
   explicit SignedSets(std::size_t count) : links_(count) {
@@ -41,14 +41,14 @@ class SignedSets {
       const std::uint32_t up = links_[i];
       const std::uint32_t next = up >> 1U;
       if (next == i) return {i, reversed};
-      // Halves the way for the next search.
+      // Path halving.
       links_[i] = links_[next] ^ (up & 1U);
       reversed ^= links_[i] & 1U;
       i = links_[i] >> 1U;
     }
   }
 
-  // The set of the lower number goes on.
+  // The root with the lower index becomes the common root.
   void join(std::uint32_t a, std::uint32_t b, bool are_opposite) {
     const Member first = find(a);
     const Member second = find(b);
@@ -85,14 +85,14 @@ std::vector<std::int16_t> agreements(const LinkedPoints& points, std::span<const
   return result;
 }
 
-// Each point's patch, from 0, and its direction in it.
+// Index of each point's patch, and its orientation within the patch.
 struct Patches {
   std::vector<SignedSets::Member> members;
   std::size_t count = 0;
 };
 
-// `is_known`: which points have the directions of each other from the start, and are one patch;
-// none where it is empty.
+// Joins neighbors with unambiguous normals. Points in `is_known`, if it is not empty, have final
+// orientations and form one patch.
 Patches grow_patches(const LinkedPoints& points, std::span<const std::int16_t> agreements,
                      const std::vector<bool>& is_known, const Progress& progress) {
   const std::size_t count = points.positions.size();
@@ -107,7 +107,8 @@ Patches grow_patches(const LinkedPoints& points, std::span<const std::int16_t> a
       sets.join(first_known, static_cast<std::uint32_t>(i), false);
     }
     for (std::size_t end = e + points.degree; e < end; ++e) {
-      if (std::abs(agreements[e]) < kNoDoubt || known(i) || known(points.links[e])) continue;
+      if (std::abs(agreements[e]) < kUnambiguousAgreement || known(i) || known(points.links[e]))
+        continue;
       sets.join(static_cast<std::uint32_t>(i), points.links[e], agreements[e] < 0);
     }
   }
@@ -117,16 +118,16 @@ Patches grow_patches(const LinkedPoints& points, std::span<const std::int16_t> a
     cancel_check.step();
     SignedSets::Member& own = patches.members[i];
     own = sets.find(static_cast<std::uint32_t>(i));
-    // A set is named after its first member, so that one has been numbered.
+    // The root of a set is its first member, so its patch already has an index.
     own.set =
         own.set == i ? static_cast<std::uint32_t>(patches.count++) : patches.members[own.set].set;
   }
   return patches;
 }
 
-// What the pairs of points between two patches say: above 0 that they have the same direction.
+// Sum of the votes between two patches: above 0 if they have the same orientation.
 struct Border {
-  std::uint32_t a;  // the lower number
+  std::uint32_t a;  // the lower index
   std::uint32_t b;
   std::int64_t votes;
 
@@ -136,15 +137,15 @@ struct Border {
   }
 };
 
-// The border of two members of patches or of sets of them, with the lower number first. One inside
-// of a patch has that twice.
+// The border between two members of patches, or of sets of patches. Within a patch both indices are
+// equal.
 Border border_between(SignedSets::Member a, SignedSets::Member b, std::int64_t votes) {
   return {std::min(a.set, b.set), std::max(a.set, b.set),
           a.is_reversed != b.is_reversed ? -votes : votes};
 }
 
-// Borders that were met lately, whose votes are summed at once: there are many pairs of points
-// between two patches, and they come soon one after the other.
+// A cache of recent borders that sums votes early: consecutive pairs of points mostly belong to the
+// same borders.
 class RecentBorders {
  public:
   void add(const Border& border) {
@@ -178,7 +179,7 @@ std::vector<Border> find_borders(const LinkedPoints& points,
   for (std::size_t i = 0, e = 0; i < points.positions.size(); ++i) {
     cancel_check.step();
     for (std::size_t end = e + points.degree; e < end; ++e) {
-      // The fourth power: many doubtful pairs count for less than a few good ones.
+      // The fourth power, so that many doubtful pairs count less than a few clear ones.
       const std::int64_t square = agreements[e] * agreements[e];
       const std::int64_t votes = (square * square) >> 16;
       const Border border = border_between(patches.members[i], patches.members[points.links[e]],
@@ -189,7 +190,7 @@ std::vector<Border> find_borders(const LinkedPoints& points,
   return borders.take();
 }
 
-// Sums the votes of the same two patches.
+// Sums the votes for each pair of patches.
 void merge_borders(std::vector<Border>* borders, const Progress& progress, int threads) {
   sort_in_parallel(borders, progress, threads);
   std::size_t kept = 0;
@@ -203,7 +204,8 @@ void merge_borders(std::vector<Border>* borders, const Progress& progress, int t
   borders->resize(kept);
 }
 
-// Joins each patch to the one that most votes tie it to, and so on with what comes of that.
+// Joins each patch to the one with the most votes, and repeats that with the joined sets (Boruvka's
+// algorithm).
 SignedSets join_patches(std::size_t count, std::vector<Border> borders, const Progress& progress,
                         int threads) {
   SignedSets sets(count);
@@ -232,11 +234,11 @@ SignedSets join_patches(std::size_t count, std::vector<Border> borders, const Pr
   return sets;
 }
 
-// The flux of the positions, as seen from some middle, through a part of the surface: three times
-// the volume of a closed one, from wherever it is seen.
+// Flux of the position vector, relative to a center, through a part of the surface. For a closed
+// surface it is three times the enclosed volume, for any center.
 struct Flux {
   double sum = 0.0;
-  double most = 0.0;  // what the sum would be if each normal were along its position
+  double most = 0.0;  // the sum if every normal were parallel to its position vector
 
   void add(const Vector3& offset, const Vector3& normal, double area) {
     sum += area * dot(offset, normal);
@@ -258,11 +260,11 @@ struct Part {
   }
 };
 
-// Whether the normals of each set point inward as a whole. A set that bulges tells by itself; a
-// piece of a larger surface, as a face of a box apart from the others, by where the others are.
+// Whether the normals of each set point inward on the whole. A convex set shows that by itself; a
+// piece of a larger surface, such as a separate face of a box, by the position of the other pieces.
 std::vector<bool> sets_inside_out(const LinkedPoints& points, std::span<const Vector3> normals,
                                   const Patches& patches, const Progress& progress) {
-  // Numbers that neither overflow nor vanish, whatever the units are.
+  // Normalized, so that products neither overflow nor vanish.
   Box box = kEmptyBox;
   for (const Vector3& position : points.positions) box.include(position);
   const double size = std::max({box.size(0), box.size(1), box.size(2)});
@@ -304,22 +306,20 @@ std::vector<bool> sets_inside_out(const LinkedPoints& points, std::span<const Ve
   return result;
 }
 
-// Of the normals that point up or down for sure, those that point down are reversed. Returns which
-// these are; the others are nearly level.
+// Reverses normals that clearly point down. Returns which normals clearly point up or down.
 std::vector<bool> turn_up(std::vector<Vector3>* normals) {
-  // Sine of ten degrees: estimates are off by that.
-  constexpr double kSure = 0.17;
+  // Sine of ten degrees, the usual error of estimated normals.
+  constexpr double kMinVertical = 0.17;
   std::vector<bool> is_known(normals->size());
   for (std::size_t i = 0; i < normals->size(); ++i) {
     Vector3& normal = (*normals)[i];
-    is_known[i] = std::abs(normal[2]) >= kSure;
+    is_known[i] = std::abs(normal[2]) >= kMinVertical;
     if (is_known[i] && normal[2] < 0.0) normal = Vector3{} - normal;
   }
   return is_known;
 }
 
-// Whether the normals of each set point down: those that are known to point up tell, or else their
-// mean.
+// Whether the normals of each set point down: decided by its known normals, otherwise by the mean.
 std::vector<bool> sets_upside_down(const LinkedPoints& points, std::span<const Vector3> normals,
                                    const Patches& patches, const std::vector<bool>& is_known,
                                    const Progress& progress) {

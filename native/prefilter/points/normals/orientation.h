@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Which of its two directions each normal of a cloud of points has.
+// Consistent orientation of normals.
 #pragma once
 
 #include <cstddef>
@@ -14,23 +14,23 @@
 
 namespace prefilter {
 
-/// How surely two near normals have the same direction, from -1 to 1: the mean of what holds on a
-/// plane, where they are parallel, and on a circle through both, where they are mirror images (Xie
-/// et al. 2003). Where these contradict each other, as across a thin sheet, it is near 0.
+/// How certainly two neighboring normals have the same orientation, from -1 to 1. The mean of two
+/// models: on a plane they are parallel, and on a circle through both points they are mirror images
+/// (Xie et al. 2003). If the models contradict each other, as across a thin sheet, it is near 0.
 double agreement(const Vector3& a, const Vector3& b, const Vector3& offset);
 
-/// Points, and which of them are near each other.
+/// Points and their neighbors.
 struct LinkedPoints {
-  std::span<const Vector3> positions;  // no two the same; fewer than 2^31
+  std::span<const Vector3> positions;  // distinct; fewer than 2^31
   std::span<const double> areas;       // of the surface around each point, in any unit
   std::size_t degree = 0;
-  // `degree` points near each point, which may be the point itself.
+  // `degree` neighbors of each point, which may include the point itself.
   std::span<const std::uint32_t> links;
 };
 
-/// Reverses normals, 1 long or zero, so that those of near points agree, and those of each
-/// connected part point outward as a whole; or so that each points up that is not nearly level, and
-/// those that are agree with near points. Throws Error(kCancelled).
+/// Reverses normals, of length 1 or zero, so that neighbors agree. For kOutward, each connected
+/// part points outward on the whole; for kUp, all normals that are not almost horizontal point up,
+/// and the others agree with their neighbors. Throws Error(kCancelled).
 void orient_normals(const LinkedPoints& points, NormalSide side, const Progress& progress,
                     int threads, std::vector<Vector3>* normals);
 

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Filters batches by position and by the LAS attributes of classes and returns.
 #include "prefilter/points/chosen_points.h"
 
 #include <algorithm>
 
 #include "prefilter/base/error.h"
+#include "prefilter/points/scan/point_fields.h"
 
 namespace prefilter {
 namespace {
 
-std::size_t place_of(const PointSource& source, const std::string& attribute,
-                     const std::string& option, const std::string& name) {
-  const std::vector<PointAttribute>& all = source.attributes();
-  const auto found = std::find_if(
-      all.begin(), all.end(), [&](const PointAttribute& each) { return each.name == attribute; });
-  if (found == all.end()) {
+std::size_t required_attribute(const PointSource& source, const std::string& attribute,
+                               const std::string& option, const std::string& name) {
+  const auto index = attribute_index(source.attributes(), attribute);
+  if (!index) {
     throw_invalid(option + ": points of " + name + " have no '" + attribute + "'");
   }
-  return static_cast<std::size_t>(found - all.begin());
+  return *index;
 }
 
 bool holds(const Box& box, const Vector3& point) {
@@ -27,7 +27,7 @@ bool holds(const Box& box, const Vector3& point) {
   return true;
 }
 
-// Leaves of rows of `width` values those whose points are kept.
+// Removes rows of `width` values whose points are not kept.
 template <typename T>
 void keep(const std::vector<bool>& is_kept, std::size_t width, std::vector<T>* values) {
   if (values->empty()) return;
@@ -51,13 +51,15 @@ void keep_points(const std::vector<bool>& is_kept, std::size_t attribute_count, 
 
 ChosenPoints::ChosenPoints(PointSource* source, const PointChoice& choice, const std::string& name)
     : ChangedPoints(source), choice_(choice) {
-  if (choice_.classes) class_ = place_of(*source_, "classification", "classes", name);
+  if (choice_.classes)
+    class_attribute_ = required_attribute(*source_, "classification", "classes", name);
   if (choice_.returns == Returns::kAll) return;
   if (choice_.returns != Returns::kOnly) {
-    number_ = place_of(*source_, "return_number", "returns", name);
+    return_number_attribute_ = required_attribute(*source_, "return_number", "returns", name);
   }
   if (choice_.returns != Returns::kFirst) {
-    of_ = place_of(*source_, "number_of_returns", "returns", name);
+    number_of_returns_attribute_ =
+        required_attribute(*source_, "number_of_returns", "returns", name);
   }
 }
 
@@ -66,12 +68,13 @@ bool ChosenPoints::is_chosen(const PointBatch& batch, std::size_t point) const {
   if (!choice_.classes && choice_.returns == Returns::kAll) return true;
   const float* const values = batch.attributes.data() + point * source_->attributes().size();
   if (choice_.classes) {
-    const float found = values[class_];
-    const bool is_class = found >= 0.0F && found < static_cast<float>(PointChoice::kClasses);
-    if (!is_class || !(*choice_.classes)[static_cast<std::size_t>(found)]) return false;
+    const float point_class = values[class_attribute_];
+    const bool is_class =
+        point_class >= 0.0F && point_class < static_cast<float>(PointChoice::kClasses);
+    if (!is_class || !(*choice_.classes)[static_cast<std::size_t>(point_class)]) return false;
   }
-  const float number = std::max(values[number_], 1.0F);
-  const float of = std::max(values[of_], 1.0F);
+  const float number = std::max(values[return_number_attribute_], 1.0F);
+  const float of = std::max(values[number_of_returns_attribute_], 1.0F);
   switch (choice_.returns) {
     case Returns::kFirst:
       return number == 1.0F;
@@ -90,7 +93,7 @@ bool ChosenPoints::read(std::size_t most, PointBatch* batch) {
   std::vector<bool> is_kept(batch->positions.size());
   for (std::size_t i = 0; i < is_kept.size(); ++i) is_kept[i] = is_chosen(*batch, i);
   keep_points(is_kept, source_->attributes().size(), batch);
-  // Also where none is left, so that whoever reads can be told to stop.
+  // Returns even an empty batch, so that the reader can check for cancellation.
   return true;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Names as the common scan formats and CloudCompare write them.
 #include "prefilter/points/scan/field_names.h"
 
 #include <utility>
@@ -7,7 +8,7 @@
 namespace prefilter {
 namespace {
 
-// In lower case and without what separates words; CloudCompare writes "scalar_" before names.
+// In lower case and without separators; CloudCompare prefixes names with "scalar_".
 constexpr std::pair<std::string_view, std::string_view> kNames[] = {
     {"x", "x"},
     {"y", "y"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What programs call the values of a point.
+// Standard names for the values of a point.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace prefilter {
 
-/// The name that a value has here, whatever program has written it: "x" for "X", "red" for
-/// "diffuse_red", "classification" for "scalar_Classification", "return_number" for
-/// "ReturnNumber". Of any other value the name as it is.
+/// The standard name of a value, whatever program wrote it: "x" for "X", "red" for "diffuse_red",
+/// "classification" for "scalar_Classification", "return_number" for "ReturnNumber". Other names
+/// are returned unchanged.
 std::string field_name(std::string_view name);
 
-/// The same, or nothing for any other value.
+/// The standard name of a value; empty if it has none.
 std::string_view known_field_name(std::string_view name);
 
 }  // namespace prefilter

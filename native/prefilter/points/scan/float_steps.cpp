@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Counts the coordinates that are odd multiples of the single-precision spacing.
 #include "prefilter/points/float_steps.h"
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kLeastOddShare = 8;  // one in so many
+constexpr std::size_t kPointsPerOddPoint = 8;  // at least one in this many must be odd
 
 }  // namespace
 
@@ -40,7 +41,7 @@ void FloatSteps::add(const FloatSteps& other) {
 double FloatSteps::step() const {
   double largest = 0.0;
   for (const Axis& axis : axes_) {
-    if (axis.is_wide || kLeastOddShare * axis.odd < axis.count || axis.odd == 0) continue;
+    if (axis.is_wide || kPointsPerOddPoint * axis.odd < axis.count || axis.odd == 0) continue;
     const auto narrow = static_cast<float>(axis.largest);
     largest = std::max(
         largest, static_cast<double>(narrow) - static_cast<double>(std::nextafter(narrow, 0.0F)));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Concatenates sources, and maps their attributes by name.
 #include "prefilter/points/joined_points.h"
 
 #include <algorithm>
@@ -9,43 +10,37 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/images/transfer.h"
+#include "prefilter/points/scan/point_fields.h"
 
 namespace prefilter {
 namespace {
 
 constexpr float kWhiteByte = 255.0F;
 
-enum class Kind { kValue, kAlpha, kColor };
+enum class AttributeKind { kValue, kAlpha, kColor };
 
-Kind kind_of(const PointAttribute& attribute) {
+AttributeKind kind_of(const PointAttribute& attribute) {
   std::string_view name = attribute.name;
   name.remove_prefix(name.rfind('.') + 1);  // npos + 1 is 0
-  if (name == "alpha") return Kind::kAlpha;
-  return name == "red" || name == "green" || name == "blue" ? Kind::kColor : Kind::kValue;
+  if (name == "alpha") return AttributeKind::kAlpha;
+  return name == "red" || name == "green" || name == "blue" ? AttributeKind::kColor
+                                                            : AttributeKind::kValue;
 }
 
 float missing_value(const PointAttribute& attribute) {
-  if (kind_of(attribute) == Kind::kValue) return 0.0F;
+  if (kind_of(attribute) == AttributeKind::kValue) return 0.0F;
   return attribute.is_byte ? kWhiteByte : 1.0F;
 }
 
-// A value of a source as the cloud has it.
+// Converts a source's value to the cloud's representation.
 float converted(float value, bool is_byte, const PointAttribute& to) {
-  const Kind kind = kind_of(to);
-  if (is_byte == to.is_byte || kind == Kind::kValue) return value;
+  const AttributeKind kind = kind_of(to);
+  if (is_byte == to.is_byte || kind == AttributeKind::kValue) return value;
   if (is_byte) {
     const float share = value / kWhiteByte;
-    return kind == Kind::kColor ? srgb_to_linear(share) : share;
+    return kind == AttributeKind::kColor ? srgb_to_linear(share) : share;
   }
-  return kWhiteByte * (kind == Kind::kColor ? linear_to_srgb(value) : value);
-}
-
-std::optional<std::size_t> place_of(const std::vector<PointAttribute>& attributes,
-                                    const std::string& name) {
-  const auto found = std::find_if(attributes.begin(), attributes.end(),
-                                  [&](const PointAttribute& each) { return each.name == name; });
-  if (found == attributes.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - attributes.begin());
+  return kWhiteByte * (kind == AttributeKind::kColor ? linear_to_srgb(value) : value);
 }
 
 }  // namespace
@@ -58,13 +53,13 @@ JoinedPoints::JoinedPoints(std::vector<PointSource*> sources, std::size_t rows_a
       throw_invalid("sources: only some have normals; all or none is needed");
     }
     for (const PointAttribute& each : source->attributes()) {
-      if (!place_of(attributes_, each.name)) attributes_.push_back(each);
+      if (!attribute_index(attributes_, each.name)) attributes_.push_back(each);
     }
   }
   for (const PointSource* source : sources_) {
     std::vector<Column>& columns = columns_.emplace_back();
     for (const PointAttribute& each : attributes_) {
-      const std::optional<std::size_t> from = place_of(source->attributes(), each.name);
+      const std::optional<std::size_t> from = attribute_index(source->attributes(), each.name);
       columns.push_back({from, from && source->attributes()[*from].is_byte});
     }
   }
@@ -137,15 +132,16 @@ bool JoinedPoints::read(std::size_t most, PointBatch* batch) {
     const std::size_t count = batch->positions.size();
     const std::optional<Vector3> viewpoint = source->viewpoint();
     if (viewpoint) batch->viewpoints.assign(count, *viewpoint);
-    batch->attributes = carried(share.source, batch->attributes, count);
+    batch->attributes = convert_attributes(share.source, batch->attributes, count);
     batch->cloud = current_;
     return true;
   }
   return false;
 }
 
-std::vector<float> JoinedPoints::carried(std::size_t source, const std::vector<float>& values,
-                                         std::size_t points) const {
+std::vector<float> JoinedPoints::convert_attributes(std::size_t source,
+                                                    const std::vector<float>& values,
+                                                    std::size_t points) const {
   const std::vector<Column>& columns = columns_[source];
   const std::size_t width = sources_[source]->attributes().size();
   std::vector<float> result(points * columns.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The compression of Marc Lehmann's LibLZF, which point clouds of PCL have.
+// Decoder for Marc Lehmann's LibLZF, which PCL uses for point clouds.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace prefilter {
 
-/// Decodes the next `compressed` bytes of a file, which must give `plain` bytes, without holding
-/// more than a few blocks of them. Throws Error where they are damaged; the message names the file.
+/// Decodes the next `compressed` bytes of a file, which must yield `plain` bytes, with a few blocks
+/// in memory. Throws Error for damaged data; the message names the file.
 void decode_lzf(ByteReader* from, std::uint64_t compressed, std::uint64_t plain, TemporaryFile* to);
 
 }  // namespace prefilter

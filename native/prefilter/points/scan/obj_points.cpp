@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Vertices and normals are read by two cursors on the same file.
 #include "prefilter/points/scan/obj_points.h"
 
 #include <algorithm>
@@ -20,10 +21,10 @@ namespace {
 
 constexpr std::string_view kVertex = "v";
 constexpr std::string_view kNormal = "vn";
-constexpr std::size_t kColored = 6;
-constexpr std::uint64_t kVerticesLookedAt = 4096;
+constexpr std::size_t kColoredVertexNumbers = 6;
+constexpr std::uint64_t kSampledVertices = 4096;
 
-// The lines of a file that begin with one keyword.
+// Cursor over the lines of a file that begin with a keyword.
 class KeywordLines {
  public:
   KeywordLines(const std::string& path, std::string_view keyword)
@@ -33,7 +34,7 @@ class KeywordLines {
   const std::string& name() const { return text_.name(); }
   std::string where() const { return text_.where(); }
 
-  // Goes on by one of them; false at the end of the file.
+  // Moves to the next such line; false at the end of the file.
   bool skip() {
     while (text_.next_line(&line_)) {
       if (take_word(&line_) == keyword_) return true;
@@ -41,7 +42,7 @@ class KeywordLines {
     return false;
   }
 
-  // The numbers of the next one, of which there must be one left.
+  // Parses the numbers of the next line, which must exist.
   void next(std::vector<double>* values) {
     if (!skip()) throw_invalid(name() + ": has changed while it was read");
     text_.parse(line_.substr(0, line_.find('#')), kBlanks, values);
@@ -62,7 +63,7 @@ class ObjPoints final : public PointSource {
     while (normals <= count_ && normals_.skip()) ++normals;
     has_normals_ = normals == count_;
     rewind();
-    look_at_vertices();
+    analyze_vertices();
     rewind();
   }
 
@@ -107,13 +108,13 @@ class ObjPoints final : public PointSource {
     }
   }
 
-  void look_at_vertices() {
+  void analyze_vertices() {
     std::vector<TextColumn> columns;
-    for (std::uint64_t k = 0; k < std::min(count_, kVerticesLookedAt); ++k) {
+    for (std::uint64_t k = 0; k < std::min(count_, kSampledVertices); ++k) {
       vertices_.next(&values_);
       if (k == 0) {
         width_ = values_.size();
-        if (width_ != 3 && width_ != 4 && width_ != kColored) {
+        if (width_ != 3 && width_ != 4 && width_ != kColoredVertexNumbers) {
           throw_invalid(vertices_.where() + ": found " + std::to_string(width_) +
                         " numbers; x, y and z, and none, one or a color after them, are needed");
         }
@@ -129,9 +130,9 @@ class ObjPoints final : public PointSource {
       const ScalarType type = is_double ? ScalarType::kDouble : ScalarType::kFloat;
       fields.push_back({name, type, fields.size(), 0});
     }
-    // Programs write the bytes of their colors as shares of 255, some as they are.
+    // Programs write byte colors divided by 255; some write the bytes themselves.
     for (const char* name : {"red", "green", "blue"}) {
-      if (width_ < kColored) break;
+      if (width_ < kColoredVertexNumbers) break;
       if (columns[fields.size()].high > 1.0) color_scale_ = 1.0;
       fields.push_back({name, ScalarType::kUint8, fields.size(), 0});
     }
@@ -144,8 +145,8 @@ class ObjPoints final : public PointSource {
   std::uint64_t count_ = 0;
   std::uint64_t done_ = 0;
   bool has_normals_ = false;
-  std::size_t width_ = 0;       // numbers of a vertex
-  double color_scale_ = 255.0;  // of what follows x, y and z
+  std::size_t width_ = 0;       // numbers per vertex
+  double color_scale_ = 255.0;  // for the numbers after x, y and z
   std::vector<double> values_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The vertices of Wavefront OBJ files.
+// Vertices of Wavefront OBJ files.
 #pragma once
 
 #include <memory>
@@ -10,11 +10,11 @@
 
 namespace prefilter {
 
-/// The lines "v x y z", with what may follow: a number that is passed over, or a color, which
-/// becomes bytes: numbers up to 255 where some are above 1, else up to 1. Where there are as many
-/// lines "vn" as vertices, they are the normals of these; all other lines are passed over. Throws
-/// Error for a file without vertices; damaged lines behind the first thousands are found when they
-/// are read.
+/// Opens an OBJ file as points, from its lines "v x y z". A single number after them is ignored;
+/// three are a color, which becomes bytes: values up to 255 if any is above 1, otherwise up to 1.
+/// If there are as many lines "vn" as vertices, they are the vertices' normals. Other lines are
+/// ignored. Throws Error for a file without vertices; damage after the first thousands of lines is
+/// reported on reading.
 std::unique_ptr<PointSource> open_obj_points(const std::string& path);
 
 }  // namespace prefilter

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// The table of formats by extension.
 #include "prefilter/points/open_points.h"
 
 #include <algorithm>
@@ -30,7 +31,7 @@ constexpr Format kFormats[] = {
 
 std::unique_ptr<PointSource> open_points(const std::string& path) {
   std::string ending = to_text(to_path(path).extension());
-  // No locale takes part in the names of formats.
+  // Independent of the locale.
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   for (const Format& format : kFormats) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// The PCD format of PCL, up to version 0.7.
 #include "prefilter/points/scan/pcd_points.h"
 
 #include <algorithm>
@@ -17,9 +18,9 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kMostFields = 4096;
-constexpr std::uint64_t kLongestHeader = std::uint64_t{1} << 20;
-constexpr std::size_t kLargestRecord = std::size_t{1} << 20;
+constexpr std::size_t kMaxPcdFields = 4096;
+constexpr std::uint64_t kMaxPcdHeaderSize = std::uint64_t{1} << 20;
+constexpr std::size_t kMaxRecordSize = std::size_t{1} << 20;
 
 struct PcdField {
   std::string name;
@@ -42,14 +43,14 @@ ScalarType type_of(const PcdField& field, const std::string& name) {
       {{'I', 1}, kInt8},  {{'I', 2}, kInt16},  {{'I', 4}, kInt32},  {{'I', 8}, kInt64},
       {{'U', 1}, kUint8}, {{'U', 2}, kUint16}, {{'U', 4}, kUint32}, {{'U', 8}, kUint64},
       {{'F', 4}, kFloat}, {{'F', 8}, kDouble}};
-  const auto found = kTypes.find({field.type, field.size});
-  if (found == kTypes.end()) {
+  const auto entry = kTypes.find({field.type, field.size});
+  if (entry == kTypes.end()) {
     throw_invalid(name + ": field " + in_quotes(field.name) + " of TYPE " +
                   in_quotes(std::string(1, field.type)) + " and SIZE " +
                   std::to_string(field.size) +
                   "; I or U of 1, 2, 4 or 8 bytes, or F of 4 or 8, are needed");
   }
-  return found->second;
+  return entry->second;
 }
 
 bool is_color(const PcdField& field) {
@@ -57,9 +58,9 @@ bool is_color(const PcdField& field) {
 }
 
 // Reads a header, and leaves the text at the first point.
-class HeaderReader {
+class PcdHeaderReader {
  public:
-  explicit HeaderReader(TextReader* text) : text_(text) {}
+  explicit PcdHeaderReader(TextReader* text) : text_(text) {}
 
   PcdHeader read() {
     std::string_view line;
@@ -82,13 +83,13 @@ class HeaderReader {
 
  private:
   bool next_line(std::string_view* line) {
-    if (text_->bytes().offset() > kLongestHeader) return false;
+    if (text_->bytes().offset() > kMaxPcdHeaderSize) return false;
     return text_->next_line(line);
   }
 
   void take(std::string_view keyword) {
     if (keyword == "FIELDS" || keyword == "COLUMNS") {
-      if (words_.size() > kMostFields) throw_invalid(text_->where() + ": too many fields");
+      if (words_.size() > kMaxPcdFields) throw_invalid(text_->where() + ": too many fields");
       for (const std::string_view word : words_) header_.fields.push_back({std::string(word)});
     } else if (keyword == "SIZE") {
       for_fields([&](PcdField* field, std::size_t k) { field->size = count(k); });
@@ -168,25 +169,26 @@ class HeaderReader {
   std::optional<std::uint64_t> points_;
 };
 
-// Where the fields are in a record, and among the numbers of a line.
-struct Layout {
+// Positions of the fields in a record and among the numbers of a line.
+struct PcdLayout {
   PointFields fields;
-  std::size_t stride = 0;  // of a record, in bytes
-  std::size_t width = 0;   // numbers of a line
-  // Colors: the number of a line, and the first of those that it becomes.
+  std::size_t stride = 0;  // bytes per record
+  std::size_t width = 0;   // numbers per line
+  // For each color: the index of its packed number in a line, and of the first of its four
+  // channels.
   std::vector<std::pair<std::size_t, std::size_t>> colors;
   std::vector<bool> is_float_color;
-  std::size_t values = 0;  // numbers of a line, and those of colors
-  // Of a field: its size in a record.
+  std::size_t values = 0;  // numbers per line, with the channels of colors
+  // bytes of each field in a record
   std::vector<std::size_t> sizes;
 };
 
-Layout layout_of(const PcdHeader& header, const std::string& name) {
-  Layout layout;
+PcdLayout layout_of(const PcdHeader& header, const std::string& name) {
+  PcdLayout layout;
   std::vector<ScanField> fields;
   for (const PcdField& field : header.fields) {
     const ScalarType type = type_of(field, name);
-    if (field.count > (kLargestRecord - layout.stride) / field.size) {
+    if (field.count > (kMaxRecordSize - layout.stride) / field.size) {
       throw_invalid(name + ": points are larger than 1 MiB");
     }
     if (field.count == 1 && field.name != "_" && !is_color(field)) {
@@ -223,7 +225,7 @@ class PcdPoints final : public PointSource {
  public:
   explicit PcdPoints(const std::string& path)
       : text_(path),
-        header_(HeaderReader(&text_).read()),
+        header_(PcdHeaderReader(&text_).read()),
         layout_(layout_of(header_, text_.name())) {
     first_ = text_.place();
     if (header_.data == "ascii") {
@@ -341,7 +343,7 @@ class PcdPoints final : public PointSource {
     }
   }
 
-  // Field after field, each of all points.
+  // Decompresses the data, which is stored field by field.
   void unpack() {
     std::uint32_t sizes[2] = {0, 0};
     const auto bytes = text_.bytes().peek(sizeof sizes);
@@ -366,7 +368,7 @@ class PcdPoints final : public PointSource {
 
   void read_columns(std::size_t count, PointBatch* batch) {
     std::vector<std::byte> column;
-    const std::size_t at_once = kLargestRecord / layout_.stride;
+    const std::size_t at_once = kMaxRecordSize / layout_.stride;
     std::vector<std::byte> records(at_once * layout_.stride);
     for (std::size_t point = 0; point < count;) {
       const std::size_t some = std::min(at_once, count - point);
@@ -390,25 +392,25 @@ class PcdPoints final : public PointSource {
   void find_surplus() {
     if (columns_) return;
     while (true) {
-      const auto rest = text_.bytes().peek(1);
-      if (rest.empty()) return;
-      // Zeros fill the last page of some binary files.
-      constexpr std::string_view kNothing(" \t\r\n\v\f\0", 7);
-      const std::string_view more(reinterpret_cast<const char*>(rest.data()), rest.size());
-      if (more.find_first_not_of(kNothing) != std::string_view::npos) {
+      const auto trailing = text_.bytes().peek(1);
+      if (trailing.empty()) return;
+      // Some binary files pad their last page with zeros.
+      constexpr std::string_view kPadding(" \t\r\n\v\f\0", 7);
+      const std::string_view more(reinterpret_cast<const char*>(trailing.data()), trailing.size());
+      if (more.find_first_not_of(kPadding) != std::string_view::npos) {
         has_more_ = true;
         return;
       }
-      text_.bytes().skip(rest.size());
+      text_.bytes().skip(trailing.size());
     }
   }
 
   TextReader text_;
   PcdHeader header_;
-  Layout layout_;
+  PcdLayout layout_;
   TextPlace first_;
-  std::optional<TemporaryFile> columns_;  // of a compressed file
-  bool has_more_ = false;                 // than the header says
+  std::optional<TemporaryFile> columns_;  // decompressed data
+  bool has_more_ = false;                 // surplus data after the points in the header
   std::uint64_t begin_ = 0;
   std::uint64_t end_ = 0;
   std::uint64_t done_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The points of PCD files, of the Point Cloud Library.
+// Points of PCD files, the format of the Point Cloud Library.
 #pragma once
 
 #include <memory>
@@ -10,11 +10,12 @@
 
 namespace prefilter {
 
-/// In text, binary, or compressed, which is unpacked to a temporary file. "rgb" and "rgba" become
-/// red, green, blue and alpha; values that are several, and padding, are passed over. VIEWPOINT is
-/// where the scanner stood, except for the origin in a cloud that is no image: it stands there,
-/// too, where nothing is known. Throws Error for what is no PCD file or is damaged; in text, a
-/// point that is missing, or one too many, is found when it is read.
+/// Opens a PCD file: text, binary, or compressed, which is decompressed to a temporary file. "rgb"
+/// and "rgba" become red, green, blue and alpha; fields with several values and padding are
+/// ignored. VIEWPOINT is the scanner's position, unless it is the origin and the cloud is not
+/// organized as an image: files without a known position have the origin, too. Throws Error for
+/// files that are not PCD or are damaged; in text, missing or surplus points are reported on
+/// reading.
 std::unique_ptr<PointSource> open_pcd_points(const std::string& path);
 
 }  // namespace prefilter

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Polygons, UVs and range grids of PLY files.
 #include "prefilter/points/ply_faces.h"
 
 #include <initializer_list>
@@ -14,11 +15,11 @@
 namespace prefilter {
 namespace {
 
-// The property with the indices of points, in an element.
+// Index of the list of vertex indices in an element.
 std::size_t index_list(const PlyFile& file, const PlyElement& element) {
   for (const char* name : {"vertex_indices", "vertex_index"}) {
-    const std::size_t found = element.find(name);
-    if (found < element.properties.size() && element.properties[found].count_type) return found;
+    const std::size_t index = element.find(name);
+    if (index < element.properties.size() && element.properties[index].count_type) return index;
   }
   throw_invalid(file.name() + ": " + element.name + " has no list 'vertex_indices'");
 }
@@ -36,7 +37,7 @@ std::int64_t checked_index(const PlyFile& file, double index, std::uint64_t coun
   return static_cast<std::int64_t>(index);
 }
 
-// What a line "obj_info num_rows 400" tells.
+// The number in a line such as "obj_info num_rows 400".
 std::uint64_t grid_size(const PlyFile& file, std::string_view name) {
   for (const std::string& info : file.obj_info()) {
     std::string_view rest = info;
@@ -47,7 +48,7 @@ std::uint64_t grid_size(const PlyFile& file, std::string_view name) {
                 std::string(name) + "' with a whole number");
 }
 
-// Now and then, as a look at the clock takes longer than a row.
+// Reports rarely, as reading the clock takes longer than a row.
 void report_rows(const PlyFile& file, std::uint64_t count, const Progress& progress) {
   constexpr std::uint64_t kRowsPerReport = 1 << 12;
   if (file.rows_left() % kRowsPerReport != 0) return;
@@ -55,12 +56,12 @@ void report_rows(const PlyFile& file, std::uint64_t count, const Progress& progr
 }
 
 std::optional<RangeGrid> range_grid_of(PlyFile file, const Progress& progress) {
-  const std::size_t found = file.find("range_grid");
-  if (found == file.elements().size()) return std::nullopt;
-  const PlyElement& element = file.elements()[found];
+  const std::size_t element_index = file.find("range_grid");
+  if (element_index == file.elements().size()) return std::nullopt;
+  const PlyElement& element = file.elements()[element_index];
   const std::uint64_t rows = grid_size(file, "num_rows");
   const std::uint64_t columns = grid_size(file, "num_cols");
-  // A quotient, as a product of what a file says can be too large.
+  // Divides, as the product of numbers from a file may overflow.
   const bool fits = columns == 0 ? element.count == 0
                                  : element.count / columns == rows && element.count % columns == 0;
   if (!fits) {
@@ -71,9 +72,9 @@ std::optional<RangeGrid> range_grid_of(PlyFile file, const Progress& progress) {
   const std::size_t list = index_list(file, element);
   const std::uint64_t count = point_count(file);
   RangeGrid grid{static_cast<std::int64_t>(rows), static_cast<std::int64_t>(columns), {}};
-  file.go_to(found, progress);
+  file.go_to(element_index, progress);
   while (file.rows_left() > 0) {
-    report_rows(file, file.elements()[found].count, progress);
+    report_rows(file, file.elements()[element_index].count, progress);
     file.read_row();
     const std::span<const double> points = file.list(list);
     grid.points.push_back(points.empty() ? -1 : checked_index(file, points[0], count));
@@ -81,36 +82,37 @@ std::optional<RangeGrid> range_grid_of(PlyFile file, const Progress& progress) {
   return grid;
 }
 
-// The numbers of the first names of all of which an element has scalars; none if it has not.
+// Indices of the first group of names that the element has scalars for.
 std::optional<std::vector<std::size_t>> scalars_named(
     const PlyElement& element, std::initializer_list<std::vector<const char*>> names) {
-  for (const std::vector<const char*>& wanted : names) {
-    std::vector<std::size_t> found;
-    for (const char* name : wanted) {
+  for (const std::vector<const char*>& group : names) {
+    std::vector<std::size_t> indices;
+    for (const char* name : group) {
       const std::size_t at = element.find(name);
-      if (at < element.properties.size() && !element.properties[at].count_type) found.push_back(at);
+      if (at < element.properties.size() && !element.properties[at].count_type)
+        indices.push_back(at);
     }
-    if (found.size() == wanted.size()) return found;
+    if (indices.size() == group.size()) return indices;
   }
   return std::nullopt;
 }
 
-// Reads positions; returns UVs of vertices, none where the file has none.
+// Reads positions; returns the UVs of vertices, if there are any.
 std::vector<std::array<double, 2>> read_vertices(PlyFile* file, const Progress& progress,
                                                  PlyMesh* mesh) {
   std::vector<std::array<double, 2>> uvs;
   const std::size_t vertex = file->find("vertex");
   if (vertex == file->elements().size()) return uvs;
   const PlyElement& element = file->elements()[vertex];
-  const auto place = scalars_named(element, {{"x", "y", "z"}});
-  if (!place) throw_invalid(file->name() + ": its element 'vertex' has no x, y and z");
+  const auto axes = scalars_named(element, {{"x", "y", "z"}});
+  if (!axes) throw_invalid(file->name() + ": its element 'vertex' has no x, y and z");
   const auto uv = scalars_named(element, {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}});
   file->go_to(vertex, progress);
   while (file->rows_left() > 0) {
     report_rows(*file, element.count, progress);
     file->read_row();
     const std::span<const double> values = file->scalars();
-    mesh->positions.push_back({values[(*place)[0]], values[(*place)[1]], values[(*place)[2]]});
+    mesh->positions.push_back({values[(*axes)[0]], values[(*axes)[1]], values[(*axes)[2]]});
     if (uv) uvs.push_back({values[(*uv)[0]], values[(*uv)[1]]});
   }
   return uvs;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Stanford's PLY format in text and in binary of either byte order. A single pass finds the start
+// of each element.
 #include "prefilter/points/scan/ply_file.h"
 
 #include <algorithm>
@@ -14,8 +16,8 @@
 namespace prefilter {
 namespace {
 
-// Headers are longer than what a stream of bytes happens to look like.
-constexpr std::uint64_t kLongestHeader = std::uint64_t{1} << 20;
+// A longer header indicates a binary file that happens to start like one.
+constexpr std::uint64_t kMaxPlyHeaderSize = std::uint64_t{1} << 20;
 
 struct TypeName {
   std::string_view name;
@@ -44,9 +46,9 @@ bool is_blank(std::string_view line) { return take_word(&line).empty(); }
 
 template <typename Named>
 std::size_t find_named(const std::vector<Named>& all, const std::string& name) {
-  const auto found =
+  const auto position =
       std::find_if(all.begin(), all.end(), [&](const Named& each) { return each.name == name; });
-  return static_cast<std::size_t>(found - all.begin());
+  return static_cast<std::size_t>(position - all.begin());
 }
 
 }  // namespace
@@ -68,7 +70,7 @@ std::size_t PlyElement::find(const std::string& property) const {
 
 PlyFile::PlyFile(ByteReader bytes) : text_(std::move(bytes)) {
   read_header();
-  places_.push_back(text_.place());
+  element_starts_.push_back(text_.place());
   check_size();
 }
 
@@ -87,7 +89,7 @@ void PlyFile::read_header() {
   std::string_view line;
   bool has_format = false;
   while (text_.next_line(&line)) {
-    if (text_.bytes().offset() > kLongestHeader) {
+    if (text_.bytes().offset() > kMaxPlyHeaderSize) {
       throw_invalid(text_.where() + ": the header is longer than 1 MiB");
     }
     const std::string_view keyword = take_word(&line);
@@ -121,7 +123,7 @@ void PlyFile::read_header() {
       if (!has_format) throw_invalid(name() + ": the header has no line 'format'");
       return;
     }
-    // All else are comments; so is what Stanford's scanner has left in some headers.
+    // All other lines are comments, or remnants in files of Stanford's scanner.
   }
   throw_invalid(name() + ": ends within the header, after line " +
                 std::to_string(text_.place().line));
@@ -149,12 +151,12 @@ void PlyFile::read_property(std::string_view line) {
   element.properties.push_back(std::move(property));
 }
 
-// Counts are compared with what is there before anything is made of them.
+// Compares announced counts with the file's size before anything is allocated.
 void PlyFile::check_size() {
   const std::uint64_t there = text_.bytes().remaining();
   std::uint64_t needed = 0;
   for (const PlyElement& element : elements_) {
-    // A number takes a digit and what separates it from the next; the last line may lack that.
+    // A number takes at least a digit and a separator; the last line may lack the latter.
     const std::uint64_t row = is_text_ ? 2 * element.properties.size() : element.row_size();
     if (row == 0) continue;
     const std::uint64_t end = there + (is_text_ ? 1 : 0);
@@ -168,16 +170,16 @@ void PlyFile::check_size() {
 }
 
 void PlyFile::go_to(std::size_t element, const Progress& progress) {
-  while (places_.size() <= element) {
-    element_ = places_.size() - 1;
+  while (element_starts_.size() <= element) {
+    element_ = element_starts_.size() - 1;
     row_ = 0;
-    text_.go_to(places_.back());
+    text_.go_to(element_starts_.back());
     skip_rows(progress);
-    places_.push_back(text_.place());
+    element_starts_.push_back(text_.place());
   }
   element_ = element;
   row_ = 0;
-  text_.go_to(places_[element]);
+  text_.go_to(element_starts_[element]);
   scalars_.assign(elements_[element].properties.size(), 0.0);
   list_ends_.assign(elements_[element].properties.size(), 0);
 }
@@ -273,10 +275,10 @@ void PlyFile::read_binary_row(const PlyElement& element) {
 }
 
 const std::byte* PlyFile::next_bytes(std::size_t count) {
-  const auto found = text_.bytes().peek(count);
-  if (found.size() < count) throw_here("the file ends within it");
+  const auto bytes = text_.bytes().peek(count);
+  if (bytes.size() < count) throw_here("the file ends within it");
   text_.bytes().skip(count);
-  return found.data();
+  return bytes.data();
 }
 
 std::span<const double> PlyFile::list(std::size_t property) const {
@@ -286,13 +288,13 @@ std::span<const double> PlyFile::list(std::size_t property) const {
 
 std::span<const std::byte> PlyFile::read_records(std::size_t most) {
   const std::size_t size = elements_[element_].row_size();
-  const auto found = text_.bytes().peek(size);
+  const auto bytes = text_.bytes().peek(size);
   const std::size_t count = static_cast<std::size_t>(
-      std::min({std::uint64_t{most}, rows_left(), std::uint64_t{found.size() / size}}));
+      std::min({std::uint64_t{most}, rows_left(), std::uint64_t{bytes.size() / size}}));
   row_ += std::max<std::size_t>(count, 1);
   if (count == 0) throw_here("the file ends within it");
   text_.bytes().skip(count * size);
-  return found.first(count * size);
+  return bytes.first(count * size);
 }
 
 void PlyFile::skip_records(std::uint64_t count) {
@@ -303,14 +305,14 @@ void PlyFile::skip_records(std::uint64_t count) {
 std::string PlyFile::surplus() {
   if (element_ + 1 < elements_.size() || rows_left() > 0) return "";
   while (true) {
-    const auto rest = text_.bytes().peek(1);
-    if (rest.empty()) return "";
-    const std::string_view more(reinterpret_cast<const char*>(rest.data()), rest.size());
+    const auto trailing = text_.bytes().peek(1);
+    if (trailing.empty()) return "";
+    const std::string_view more(reinterpret_cast<const char*>(trailing.data()), trailing.size());
     if (more.find_first_not_of(" \t\r\n\v\f") != std::string_view::npos) {
       return name() + ": holds more than the " + std::to_string(elements_[element_].count) +
              " rows of " + in_quotes(elements_[element_].name) + " in its header";
     }
-    text_.bytes().skip(rest.size());
+    text_.bytes().skip(trailing.size());
   }
 }
 

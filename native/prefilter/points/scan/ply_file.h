@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// PLY files: the header, and the rows of the elements that it announces.
+// PLY files: the header, and the rows of its elements.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace prefilter {
 struct PlyProperty {
   std::string name;
   ScalarType type = ScalarType::kFloat;
-  std::optional<ScalarType> count_type;  // of a list
+  std::optional<ScalarType> count_type;  // for lists
 };
 
 struct PlyElement {
@@ -27,47 +27,46 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 
   bool has_lists() const;
-  /// Of a binary row; of its shortest where it has lists.
+  /// Bytes of a binary row; the least possible number if it has lists.
   std::size_t row_size() const;
-  /// The number of a property, or how many there are.
+  /// Index of a property, or the number of properties if there is none.
   std::size_t find(const std::string& property) const;
 };
 
-/// Reads the rows of one element after the other. All functions throw Error for what is no PLY
-/// file or is damaged, with its name and the place in it.
+/// Reads the rows of elements. All functions throw Error for files that are not PLY or are damaged,
+/// with the file's name and the position of the damage.
 class PlyFile {
  public:
-  /// Reads the header. Throws where the file is too short for what it announces.
+  /// Reads the header. Throws Error if the file is too short for the announced rows.
   explicit PlyFile(ByteReader bytes);
 
   const std::string& name() const { return text_.name(); }
   bool is_text() const { return is_text_; }
-  /// Whether numbers are of the endianness that this machine does not have.
+  /// Whether the byte order differs from this machine's.
   bool is_swapped() const { return is_swapped_; }
   const std::vector<PlyElement>& elements() const { return elements_; }
-  /// The number of an element, or how many there are.
+  /// Index of an element, or the number of elements if there is none.
   std::size_t find(const std::string& element) const;
-  /// What comes after a word of a line "obj_info".
+  /// The texts after "obj_info" in such lines.
   const std::vector<std::string>& obj_info() const { return obj_info_; }
 
-  /// Goes to the first row of an element. Where what comes before has to be read for that, a
-  /// progress can stop it.
+  /// Moves to the first row of an element. May have to read preceding rows, which `progress` can
+  /// cancel.
   void go_to(std::size_t element, const Progress& progress = {});
-  /// Reads the next row of this element, of which there must be one left.
+  /// Reads the next row of the element, which must exist.
   void read_row();
-  /// Of the row that was read last: its values by the number of the property; lists have 0.
+  /// Values of the current row by property index; lists have 0.
   std::span<const double> scalars() const { return scalars_; }
   std::span<const double> list(std::size_t property) const;
-  /// Binary rows as they lie there, `most` at the most and one at least, where the element has no
-  /// lists.
+  /// Up to `most` raw binary rows, and at least one, of an element without lists.
   std::span<const std::byte> read_records(std::size_t most);
-  /// Goes over so many of these, which are there.
+  /// Skips this many such rows, which must exist.
   void skip_records(std::uint64_t count);
-  /// Rows of this element that are left.
+  /// Number of unread rows of the element.
   std::uint64_t rows_left() const { return elements_[element_].count - row_; }
-  /// What to say where anything follows the rows of the last element; empty where nothing does.
+  /// Message about data after the last row of the last element; empty if there is none.
   std::string surplus();
-  /// Throws an Error about the row that was read last.
+  /// Throws an Error about the current row.
   [[noreturn]] void throw_here(const std::string& what) const;
 
  private:
@@ -84,14 +83,14 @@ class PlyFile {
   bool is_swapped_ = false;
   std::vector<PlyElement> elements_;
   std::vector<std::string> obj_info_;
-  std::vector<TextPlace> places_;  // where elements begin, as far as is known
+  std::vector<TextPlace> element_starts_;  // starts of the elements found so far
   std::size_t element_ = 0;
-  std::uint64_t row_ = 0;     // rows of the element that were read
-  bool is_skipping_ = false;  // lists need not be kept
+  std::uint64_t row_ = 0;     // rows of the element read so far
+  bool is_skipping_ = false;  // lists are not stored
   std::vector<double> values_;
   std::vector<double> scalars_;
   std::vector<double> list_values_;
-  std::vector<std::size_t> list_ends_;  // in list_values_, by the number of the property
+  std::vector<std::size_t> list_ends_;  // in list_values_, by property index
 };
 
 }  // namespace prefilter

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Binary elements without lists are read as raw records, others row by row.
 #include "prefilter/points/scan/ply_points.h"
 
 #include <algorithm>
@@ -13,16 +14,16 @@ namespace prefilter {
 namespace {
 
 std::size_t vertex_element(const PlyFile& file) {
-  const std::size_t found = file.find("vertex");
-  if (found == file.elements().size()) {
+  const std::size_t element = file.find("vertex");
+  if (element == file.elements().size()) {
     throw_invalid(file.name() + ": there is no element 'vertex' in its header");
   }
-  return found;
+  return element;
 }
 
 PointFields fields_of(const PlyElement& element, const std::string& name) {
   std::vector<ScanField> fields;
-  std::size_t offset = 0;  // means nothing where there are lists
+  std::size_t offset = 0;  // meaningless if there are lists
   for (std::size_t i = 0; i < element.properties.size(); ++i) {
     const PlyProperty& property = element.properties[i];
     if (!property.count_type) fields.push_back({property.name, property.type, i, offset});
@@ -31,7 +32,7 @@ PointFields fields_of(const PlyElement& element, const std::string& name) {
   return {fields, name};
 }
 
-// Says of a file that holds more than its header says what was done with that.
+// Warning about data after the announced points.
 std::vector<std::string> warnings_of(const std::string& surplus) {
   if (surplus.empty()) return {};
   return {surplus + "; the rest was not read"};

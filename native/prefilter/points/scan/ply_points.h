@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The points of PLY files.
+// Points of PLY files.
 #pragma once
 
 #include <memory>
@@ -11,10 +11,10 @@
 
 namespace prefilter {
 
-/// The rows of "vertex", in text or binary of either endianness; all other elements and lists are
-/// passed over. Throws Error for what is no PLY file, is damaged, or has no points; a point that
-/// is missing, or one too many, is found when it is read. Gaussian splats: see
-/// as_points_of_splats.
+/// Opens the element "vertex" of a PLY file, in text or binary of either byte order; other elements
+/// and lists are ignored. Gaussian splats are converted (see as_points_of_splats). Throws Error for
+/// files that are not PLY, are damaged or have no points; missing or surplus points are reported on
+/// reading.
 std::unique_ptr<PointSource> open_ply_points(const std::string& path);
 std::unique_ptr<PointSource> open_ply_points(ByteReader bytes);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Records are converted column by column in small blocks.
 #include "prefilter/points/scan/point_fields.h"
 
 #include <algorithm>
@@ -18,8 +19,7 @@
 namespace prefilter {
 namespace {
 
-// Records that fit into the first level of the cache, with what they become, while one column
-// after the other is taken out of them.
+// Records per block, so that they and the results fit into the L1 cache.
 constexpr std::size_t kRecordsAtOnce = 256;
 
 template <std::size_t kSize>
@@ -57,7 +57,7 @@ T load(const std::byte* bytes) {
   return std::bit_cast<T>(bits);
 }
 
-// Calls function with a value of the type that a ScalarType names.
+// Calls `function` with a value of the C++ type of a ScalarType.
 template <typename Function>
 auto with_type(ScalarType type, const Function& function) {
   switch (type) {
@@ -99,7 +99,7 @@ void convert_column(ScalarType type, bool is_swapped, const std::byte* from, std
   });
 }
 
-// More digits than a float has.
+// Whether a type has more digits than a float.
 bool is_precise(ScalarType type) {
   return type == ScalarType::kDouble || (size_of(type) >= 4 && type != ScalarType::kFloat);
 }
@@ -126,12 +126,12 @@ PointFields::PointFields(const std::vector<ScanField>& fields, const std::string
   }
   std::vector<ScanField> known = fields;
   for (ScanField& field : known) {
-    // What has the name itself comes before what only means the same.
+    // Fields with a standard name take precedence over synonyms.
     std::string meaning = field_name(field.name);
     if (names.insert(meaning).second) field.name = std::move(meaning);
   }
-  const auto has_all = [&](std::array<const char*, 3> wanted) {
-    return std::all_of(wanted.begin(), wanted.end(),
+  const auto has_all = [&](std::array<const char*, 3> axes) {
+    return std::all_of(axes.begin(), axes.end(),
                        [&](const char* each) { return names.contains(each); });
   };
   has_normals_ = has_all({"nx", "ny", "nz"});
@@ -181,16 +181,16 @@ void PointFields::put_values(const double* values, std::size_t point, PointBatch
     const double value = values[column.field.index];
     switch (column.role) {
       case Role::kPosition:
-        batch->positions[point][column.place] = value;
+        batch->positions[point][column.component] = value;
         break;
       case Role::kNormal:
-        batch->normals[point][column.place] = static_cast<float>(value);
+        batch->normals[point][column.component] = static_cast<float>(value);
         break;
       case Role::kWeight:
         batch->weights[point] = static_cast<float>(value);
         break;
       case Role::kAttribute:
-        batch->attributes[point * attributes_.size() + column.place] =
+        batch->attributes[point * attributes_.size() + column.component] =
             column.is_deep ? to_byte(value) : static_cast<float>(value);
         break;
     }
@@ -209,10 +209,10 @@ void PointFields::put_records(const std::byte* records, std::size_t stride, bool
       };
       switch (column.role) {
         case Role::kPosition:
-          convert(&batch->positions[point][column.place], 3);
+          convert(&batch->positions[point][column.component], 3);
           break;
         case Role::kNormal:
-          convert(&batch->normals[point][column.place], 3);
+          convert(&batch->normals[point][column.component], 3);
           break;
         case Role::kWeight:
           convert(&batch->weights[point], 1);
@@ -229,21 +229,30 @@ void PointFields::put_attribute(const Column& column, const std::byte* from, std
                                 bool is_swapped, std::size_t point, std::size_t count,
                                 PointBatch* batch) const {
   const std::size_t width = attributes_.size();
-  float* const to = &batch->attributes[point * width + column.place];
+  float* const to = &batch->attributes[point * width + column.component];
   convert_column(column.field.type, is_swapped, from, stride, count, to, width);
   for (std::size_t i = 0; column.is_deep && i < count; ++i) to[i * width] = to_byte(to[i * width]);
 }
 
+std::optional<std::size_t> attribute_index(const std::vector<PointAttribute>& attributes,
+                                           const std::string& name) {
+  const auto attribute =
+      std::find_if(attributes.begin(), attributes.end(),
+                   [&](const PointAttribute& each) { return each.name == name; });
+  if (attribute == attributes.end()) return std::nullopt;
+  return static_cast<std::size_t>(attribute - attributes.begin());
+}
+
 void find_color_scale(PointSource* source, PointFields* fields) {
   if (!fields->has_deep_colors()) return;
-  constexpr std::size_t kLookedAt = 1'000'000;
-  constexpr std::size_t kAtOnce = 1 << 16;
+  constexpr std::size_t kSampledPoints = 1'000'000;
+  constexpr std::size_t kBatchSize = 1 << 16;
   const std::vector<PointAttribute>& attributes = source->attributes();
   fields->set_color_scale(1.0);
   source->rewind();
   PointBatch batch;
   float highest = 0.0F;
-  for (std::size_t colored = 0; colored < kLookedAt && source->read(kAtOnce, &batch);) {
+  for (std::size_t colored = 0; colored < kSampledPoints && source->read(kBatchSize, &batch);) {
     for (std::size_t i = 0; i < batch.attributes.size(); i += attributes.size()) {
       float brightest = 0.0F;
       for (std::size_t a = 0; a < attributes.size(); ++a) {

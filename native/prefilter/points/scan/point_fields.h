@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What the numbers that a file keeps for each point mean.
+// Meaning of the numbers that a file stores for each point.
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,47 +25,46 @@ enum class ScalarType {
   kDouble
 };
 
-/// In bytes.
+/// Size in bytes.
 std::size_t size_of(ScalarType type);
 
-/// The number at an address of any alignment; `is_swapped`: of the other endianness.
+/// Loads a number from an unaligned address; `is_swapped` reverses its bytes.
 double load_scalar(ScalarType type, bool is_swapped, const std::byte* bytes);
 
-/// What makes bytes of colors of 16 bits.
+/// Factor from 16-bit colors to bytes.
 inline constexpr double kDeepColorScale = 255.0 / 65535.0;
 
 struct ScanField {
   std::string name;
   ScalarType type = ScalarType::kFloat;
-  // Of the value among the numbers of a point (for text), and in its record, in bytes.
+  // Index among the numbers of a point (in text), and offset in its record in bytes.
   std::size_t index = 0;
   std::size_t offset = 0;
 };
 
-/// Turns points as they lie in a file into batches. Positions are x, y, z; normals are nx, ny, nz;
-/// weights are named confidence, each as field_name has it. All others are attributes. Colors of 16
-/// bits become bytes.
+/// Converts points from a file's layout to batches. x, y, z are positions, nx, ny, nz normals and
+/// confidence weights, after renaming by field_name; all other fields are attributes. 16-bit colors
+/// become bytes.
 class PointFields {
  public:
   PointFields() = default;
-  /// Throws Error where x, y or z is missing, or two fields have the same name; `name` is the
-  /// file's.
+  /// Throws Error if x, y or z is missing, or two fields have the same name; `name` is the file's.
   PointFields(const std::vector<ScanField>& fields, const std::string& name);
 
   bool has_normals() const { return has_normals_; }
   bool is_double() const { return is_double_; }
   const std::vector<PointAttribute>& attributes() const { return attributes_; }
 
-  /// Colors of 16 bits of which only the lower 8 are used are bytes already. To be told before
-  /// points are read, where find_color_scale has nothing to read.
+  /// Some files store bytes in 16-bit colors. Their scale must be set before reading if
+  /// find_color_scale cannot determine it.
   bool has_deep_colors() const { return has_deep_colors_; }
   void set_color_scale(double scale) { color_scale_ = scale; }
 
-  /// Gives a batch the room for so many points.
+  /// Allocates a batch for this many points.
   void resize(std::size_t count, PointBatch* batch) const;
-  /// The numbers of one point, as they are numbered by the fields' indices.
+  /// Stores the numbers of one point, ordered by the fields' indices.
   void put_values(const double* values, std::size_t point, PointBatch* batch) const;
-  /// Points as records of `stride` bytes.
+  /// Stores points from records of `stride` bytes.
   void put_records(const std::byte* records, std::size_t stride, bool is_swapped, std::size_t first,
                    std::size_t count, PointBatch* batch) const;
 
@@ -73,8 +73,8 @@ class PointFields {
   struct Column {
     ScanField field;
     Role role = Role::kAttribute;
-    std::size_t place = 0;  // the axis, or the number of the attribute
-    bool is_deep = false;   // a color of 16 bits
+    std::size_t component = 0;  // axis, or index of the attribute
+    bool is_deep = false;       // a 16-bit color
   };
 
   void add(const ScanField& field);
@@ -92,8 +92,12 @@ class PointFields {
   double color_scale_ = kDeepColorScale;
 };
 
-/// Finds out by the first million of points with a color how many bits of 16 these have; `fields`
-/// are those of the source, which then is at its first point.
+/// Index of the attribute with this name, or nothing.
+std::optional<std::size_t> attribute_index(const std::vector<PointAttribute>& attributes,
+                                           const std::string& name);
+
+/// Determines whether 16-bit colors use all bits, from the first million points with a color.
+/// `fields` are those of the source, which is rewound.
 void find_color_scale(PointSource* source, PointFields* fields);
 
 }  // namespace prefilter

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// One pass through the scans of a file; each scan has its own header.
 #include "prefilter/points/scan/ptx_points.h"
 
 #include <array>
@@ -19,8 +20,8 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kPlain = 4;    // numbers of a point: x, y, z and an intensity
-constexpr std::size_t kColored = 7;  // and red, green and blue
+constexpr std::size_t kPlainPtxNumbers = 4;    // numbers per point: x, y, z, intensity
+constexpr std::size_t kColoredPtxNumbers = 7;  // and red, green, blue
 
 class PtxPoints final : public PointSource {
  public:
@@ -28,7 +29,7 @@ class PtxPoints final : public PointSource {
     rewind();
     if (next_scan() && left_ > 0) {
       next_line();
-      if (values_.size() != kPlain && values_.size() != kColored) {
+      if (values_.size() != kPlainPtxNumbers && values_.size() != kColoredPtxNumbers) {
         throw_invalid(text_.where() + ": found " + std::to_string(values_.size()) +
                       " numbers; x, y, z, an intensity and no or three colors are needed");
       }
@@ -46,7 +47,7 @@ class PtxPoints final : public PointSource {
     rewind();
   }
 
-  // Some of the grid have none.
+  // Unknown, as grid cells may have no point.
   std::optional<std::size_t> count() const override { return std::nullopt; }
   bool has_normals() const override { return false; }
   const std::vector<PointAttribute>& attributes() const override { return fields_.attributes(); }
@@ -70,7 +71,7 @@ class PtxPoints final : public PointSource {
                       std::to_string(width_) + " are needed, as before");
       }
       if (values_[0] == 0.0 && values_[1] == 0.0 && values_[2] == 0.0) continue;
-      place();
+      transform();
       fields_.resize(size + 1, batch);
       fields_.put_values(values_.data(), size, batch);
       viewpoints.push_back(matrix_[3]);
@@ -99,14 +100,15 @@ class PtxPoints final : public PointSource {
 
   std::uint64_t read_count(const char* what) {
     read_head(1, what);
-    constexpr double kMost = 1e9;
-    if (!(values_[0] >= 0.0 && values_[0] <= kMost && std::floor(values_[0]) == values_[0])) {
+    constexpr double kMaxCount = 1e9;
+    if (!(values_[0] >= 0.0 && values_[0] <= kMaxCount && std::floor(values_[0]) == values_[0])) {
       throw_invalid(text_.where() + ": no whole number from 0 to 1e9; " + what);
     }
     return static_cast<std::uint64_t>(values_[0]);
   }
 
-  // False at the end of the file, behind which may be empty lines.
+  // Reads the header of the next scan; false at the end of the file. Empty lines may precede the
+  // end.
   bool next_scan() {
     TextPlace begin = text_.place();
     std::string_view line;
@@ -118,8 +120,8 @@ class PtxPoints final : public PointSource {
     text_.go_to(begin);
     const std::uint64_t columns = read_count("the number of columns of a scan is needed");
     left_ = columns * read_count("the number of rows of a scan is needed");
-    // A line takes four digits and what separates them; the last may lack its end.
-    if (left_ > (text_.bytes().remaining() + 1) / (2 * kPlain)) {
+    // A line takes at least four digits with separators; the last line may lack its end.
+    if (left_ > (text_.bytes().remaining() + 1) / (2 * kPlainPtxNumbers)) {
       throw_invalid(text_.where() + ": a scan of " + std::to_string(left_) + " lines; " +
                     std::to_string(text_.bytes().remaining()) + " bytes follow");
     }
@@ -131,20 +133,20 @@ class PtxPoints final : public PointSource {
     return true;
   }
 
-  void place() {
-    Vector3 placed = matrix_[3];
+  void transform() {
+    Vector3 transformed = matrix_[3];
     for (std::size_t r = 0; r < 3; ++r) {
-      for (std::size_t a = 0; a < 3; ++a) placed[a] += values_[r] * matrix_[r][a];
+      for (std::size_t a = 0; a < 3; ++a) transformed[a] += values_[r] * matrix_[r][a];
     }
-    for (std::size_t a = 0; a < 3; ++a) values_[a] = placed[a];
+    for (std::size_t a = 0; a < 3; ++a) values_[a] = transformed[a];
   }
 
   TextReader text_;
   PointFields fields_;
-  std::size_t width_ = kPlain;
+  std::size_t width_ = kPlainPtxNumbers;
   std::vector<double> values_;
-  // Of the scan in hand: the matrix's first three columns, the last row of which is where the
-  // scanner stood, and the lines that are left.
+  // The current scan: the first three columns of its matrix, whose last row is the scanner's
+  // position, and the number of unread lines.
   std::array<Vector3, 4> matrix_{};
   std::uint64_t left_ = 0;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Leica's PTX.
+// Leica's PTX scans.
 #pragma once
 
 #include <memory>
@@ -10,12 +10,11 @@
 
 namespace prefilter {
 
-/// Scans one after the other, each with its grid's columns and rows, its place, its axes, the
-/// matrix that its points are to be multiplied with, as rows, and a line for each place in the
-/// grid: x y z intensity, and a color, or none has. Points at the scanner, which saw nothing, are
-/// left out; the others are placed by the matrix, and have its place as their viewpoint. Throws
-/// Error for what is no such file; damaged lines behind the first scan's head are found when they
-/// are read.
+/// Opens a PTX file: consecutive scans, each with the columns and rows of its grid, the scanner's
+/// position and axes, a matrix for row vectors, and a line "x y z intensity" per grid cell, in
+/// which all points or none have a color. Points at the scanner are misses and are left out; others
+/// are transformed by the matrix and have the scanner as their viewpoint. Throws Error for files in
+/// another format; damage after the first scan's header is reported on reading.
 std::unique_ptr<PointSource> open_ptx_points(const std::string& path);
 
 }  // namespace prefilter

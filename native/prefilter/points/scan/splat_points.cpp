@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Kerbl et al., 3D Gaussian Splatting for Real-Time Radiance Field Rendering (2023): their files
-// have logarithms of scales, quaternions (w first) that need not be 1 long, logits of opacities,
-// and coefficients of spherical harmonics.
+// Kerbl et al., 3D Gaussian Splatting for Real-Time Radiance Field Rendering (2023). Their files
+// store logarithms of scales, quaternions (w first) that need not be normalized, logits of
+// opacities, and coefficients of spherical harmonics.
 #include "prefilter/points/scan/splat_points.h"
 
 #include <algorithm>
@@ -16,34 +16,27 @@
 #include <vector>
 
 #include "prefilter/base/elementary.h"
+#include "prefilter/points/scan/point_fields.h"
 
 namespace prefilter {
 namespace {
 
-// The first spherical harmonic, 1 / (2 sqrt(pi)), and what is added for a color.
+// The constant spherical harmonic, 1 / (2 sqrt(pi)), and the offset of colors.
 constexpr double kFirstHarmonic = 0.28209479177387814;
-constexpr double kMiddle = 0.5;
+constexpr double kColorOffset = 0.5;
 
-using Places = std::vector<std::size_t>;
+using Indices = std::vector<std::size_t>;
 
-std::optional<std::size_t> place_of(const std::vector<PointAttribute>& attributes,
-                                    const std::string& name) {
-  const auto found = std::find_if(attributes.begin(), attributes.end(),
-                                  [&](const PointAttribute& each) { return each.name == name; });
-  if (found == attributes.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - attributes.begin());
-}
-
-// Where "scale_0" and so on are, as many as there are.
-Places places_of(const std::vector<PointAttribute>& attributes, const std::string& name,
-                 std::size_t most) {
-  Places places;
-  while (places.size() < most) {
-    const auto found = place_of(attributes, name + "_" + std::to_string(places.size()));
-    if (!found) break;
-    places.push_back(*found);
+// Indices of "scale_0" and so on, as many as exist.
+Indices numbered_attributes(const std::vector<PointAttribute>& attributes, const std::string& name,
+                            std::size_t most) {
+  Indices indices;
+  while (indices.size() < most) {
+    const auto index = attribute_index(attributes, name + "_" + std::to_string(indices.size()));
+    if (!index) break;
+    indices.push_back(*index);
   }
-  return places;
+  return indices;
 }
 
 bool belongs_to_splats(std::string_view name) {
@@ -51,25 +44,26 @@ bool belongs_to_splats(std::string_view name) {
          name.starts_with("f_dc_") || name.starts_with("f_rest_");
 }
 
-// Where the numbers of a splat are among its attributes.
+// Indices of a splat's parameters among its attributes.
 struct Splat {
-  Places scales;
-  Places rotation;
-  Places color;  // three, or none
+  Indices scales;
+  Indices rotation;
+  Indices color;  // three, or none
   std::size_t opacity = 0;
 };
 
 std::optional<Splat> splat_of(const std::vector<PointAttribute>& attributes) {
-  Splat splat{places_of(attributes, "scale", 3), places_of(attributes, "rot", 4),
-              places_of(attributes, "f_dc", 3), 0};
-  const auto opacity = place_of(attributes, "opacity");
+  Splat splat{numbered_attributes(attributes, "scale", 3),
+              numbered_attributes(attributes, "rot", 4), numbered_attributes(attributes, "f_dc", 3),
+              0};
+  const auto opacity = attribute_index(attributes, "opacity");
   if (splat.scales.size() < 2 || splat.rotation.size() < 4 || !opacity) return std::nullopt;
   splat.opacity = *opacity;
   if (splat.color.size() < 3) splat.color.clear();
   return splat;
 }
 
-// Column `axis` of the matrix of a quaternion; zero for what is none.
+// Column `axis` of a quaternion's rotation matrix; zero for an invalid quaternion.
 std::array<float, 3> rotated_axis(std::array<double, 4> q, std::size_t axis) {
   const double size = std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2]), std::abs(q[3])});
   if (!(size > 0.0) || !std::isfinite(size)) return {};
@@ -91,7 +85,7 @@ std::array<float, 3> rotated_axis(std::array<double, 4> q, std::size_t axis) {
 
 float color_byte(double coefficient) {
   if (std::isnan(coefficient)) return 0.0F;
-  const double share = std::clamp(kMiddle + kFirstHarmonic * coefficient, 0.0, 1.0);
+  const double share = std::clamp(kColorOffset + kFirstHarmonic * coefficient, 0.0, 1.0);
   return static_cast<float>(std::round(255.0 * share));
 }
 
@@ -105,7 +99,7 @@ class SplatPoints final : public PointSource {
       const std::string& name = all[a].name;
       const bool is_color = name == "red" || name == "green" || name == "blue";
       if (belongs_to_splats(name) || (has_color && is_color)) continue;
-      kept_.push_back(a);
+      retained_.push_back(a);
       attributes_.push_back(all[a]);
     }
     for (const char* name : {"red", "green", "blue"}) {
@@ -138,8 +132,8 @@ class SplatPoints final : public PointSource {
       const float* const own = batch->attributes.data() + i * width;
       batch->normals[i] = normal_of(own);
       batch->weights[i] = opacity_of(own[splat_.opacity]);
-      for (const std::size_t place : kept_) values.push_back(own[place]);
-      for (const std::size_t place : splat_.color) values.push_back(color_byte(own[place]));
+      for (const std::size_t index : retained_) values.push_back(own[index]);
+      for (const std::size_t index : splat_.color) values.push_back(color_byte(own[index]));
     }
     batch->attributes = std::move(values);
     return true;
@@ -156,7 +150,7 @@ class SplatPoints final : public PointSource {
     return rotated_axis(rotation, axis);
   }
 
-  // What has no opacity counts nothing.
+  // A NaN counts as transparent.
   static float opacity_of(float logit) {
     if (std::isnan(logit)) return 0.0F;
     return static_cast<float>(1.0 / (1.0 + elementary::exp(-static_cast<double>(logit))));
@@ -164,7 +158,7 @@ class SplatPoints final : public PointSource {
 
   std::unique_ptr<PointSource> source_;
   Splat splat_;
-  Places kept_;  // of the source's attributes
+  Indices retained_;  // indices of the source's attributes
   std::vector<PointAttribute> attributes_;
 };
 

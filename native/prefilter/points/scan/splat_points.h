@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Gaussian splats as points of a surface.
+// Gaussian splats as surface points.
 #pragma once
 
 #include <memory>
@@ -9,12 +9,11 @@
 
 namespace prefilter {
 
-/// The points of a source whose attributes are those of Gaussian splats (scale_0 and so on, rot_0
-/// to rot_3, opacity): their centers. A splat is flat along its shortest axis, which is its normal
-/// but for the direction; surfels, which have no third axis, have that one. Weights are opacities,
-/// which files keep as logits, and colors are bytes of what f_dc_0 to f_dc_2 say of all directions;
-/// how splats look from one direction or another (f_rest) is left out. Any other source comes back
-/// as it is.
+/// Converts a source whose attributes describe Gaussian splats (scale_0 and so on, rot_0 to rot_3,
+/// opacity) to points at their centers. The normal is a splat's shortest axis, of unknown sign; for
+/// surfels, with two scales, it is the third axis. Weights are opacities, stored as logits, and
+/// colors are bytes of f_dc_0 to f_dc_2, the part independent of the direction; f_rest is ignored.
+/// Other sources are returned unchanged.
 std::unique_ptr<PointSource> as_points_of_splats(std::unique_ptr<PointSource> source);
 
 }  // namespace prefilter

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Heuristics for files without column names: counts, ranges and unit lengths.
 #include "prefilter/points/scan/text_columns.h"
 
 #include <algorithm>
@@ -16,8 +17,8 @@
 namespace prefilter {
 namespace {
 
-// Whether the decimals that tell the number from others of double precision tell more than those of
-// the nearest float.
+// Whether the shortest decimal representation of the double has more digits than that of the
+// nearest float.
 bool needs_double(double value) {
   char as_double[32];
   char as_float[32];
@@ -33,7 +34,7 @@ bool are_bytes(std::span<const TextColumn> columns) {
   });
 }
 
-// Colors in whole numbers, whose type says how large these can be.
+// Type of integer colors, from their largest value.
 ScalarType type_of_colors(std::span<const TextColumn> columns) {
   if (are_bytes(columns)) return ScalarType::kUint8;
   const bool are_deep = std::all_of(columns.begin(), columns.end(), [](const TextColumn& each) {
@@ -55,13 +56,13 @@ ScalarType type_of_positions(const TextColumn& x, const TextColumn& y, const Tex
 
 ScalarType type_of_named_colors(std::span<const TextColumn> columns,
                                 std::span<const std::string> names) {
-  std::vector<TextColumn> found;
+  std::vector<TextColumn> colors;
   for (const char* name : {"red", "green", "blue"}) {
     const auto place = std::find(names.begin(), names.end(), name) - names.begin();
     if (place == std::ssize(names)) return ScalarType::kFloat;
-    found.push_back(columns[static_cast<std::size_t>(place)]);
+    colors.push_back(columns[static_cast<std::size_t>(place)]);
   }
-  return type_of_colors(found);
+  return type_of_colors(colors);
 }
 
 std::string name_of_any(std::size_t column) { return "value" + std::to_string(column + 1); }
@@ -84,7 +85,7 @@ class ColumnNames {
   std::vector<ScanField> take() { return std::move(fields_); }
 
  private:
-  // Whether the fourth column is one by itself, before three that belong together.
+  // Whether the fourth column stands alone before a triple.
   static bool is_three_after(std::span<const TextColumn> columns) {
     return is_color(columns.subspan(4, 3)) || (columns[4].begins_unit && !columns[3].begins_unit);
   }
@@ -121,7 +122,7 @@ class ColumnNames {
   bool has_normal_ = false;
 };
 
-// How lines of names call what has a name here, besides what all files do.
+// Synonyms of names in header lines, in addition to those of field_name.
 constexpr std::pair<std::string_view, std::string_view> kSynonyms[] = {
     {"r", "red"},
     {"g", "green"},
@@ -162,7 +163,7 @@ void TextColumn::include(double value) {
   is_double = is_double || needs_double(value);
 }
 
-// Normals are written with few digits.
+// Normals are often written with few digits.
 bool is_unit(const double* vector) {
   return std::abs(elementary::hypot(vector[0], vector[1], vector[2]) - 1.0) < 0.01;
 }
@@ -178,19 +179,19 @@ std::vector<ScanField> named_fields(std::span<const TextColumn> columns,
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   };
   const std::array<std::size_t, 3> axes{place_of("x"), place_of("y"), place_of("z")};
-  const ScalarType of_positions =
+  const ScalarType position_type =
       type_of_positions(columns[axes[0]], columns[axes[1]], columns[axes[2]]);
-  const ScalarType of_colors = type_of_named_colors(columns, names);
+  const ScalarType color_type = type_of_named_colors(columns, names);
   std::vector<ScanField> fields;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const std::string& name = names[c];
     ScanField field = {name, ScalarType::kFloat, c, 0};
     if (std::find(axes.begin(), axes.end(), c) != axes.end()) {
-      field.type = of_positions;
+      field.type = position_type;
     } else if (name == "red" || name == "green" || name == "blue") {
-      field.type = of_colors;
+      field.type = color_type;
     }
-    // One name may stand over several columns, or none.
+    // A name may be repeated or empty.
     if (name.empty() || place_of(name) != c) field.name = name_of_any(c);
     fields.push_back(std::move(field));
   }
@@ -199,19 +200,19 @@ std::vector<ScanField> named_fields(std::span<const TextColumn> columns,
 
 std::vector<std::string> names_in(std::string_view line) {
   std::vector<std::string> names;
-  const std::size_t found = line.find_first_of(",;\t");
-  if (found == std::string_view::npos) {
+  const std::size_t first_separator = line.find_first_of(",;\t");
+  if (first_separator == std::string_view::npos) {
     for (std::string_view word = take_word(&line); !word.empty(); word = take_word(&line)) {
       names.push_back(column_name(word));
     }
     return names;
   }
-  const char separator = line[found];
+  const char separator = line[first_separator];
   while (true) {
     const std::size_t end = std::min(line.find(separator), line.size());
     std::string_view part = without_quotes(line.substr(0, end));
     const std::string_view known = known_field_name(part);
-    // What follows the first word is a unit.
+    // A unit may follow the first word.
     names.push_back(known.empty() ? column_name(take_word(&part)) : std::string(known));
     if (end == line.size()) return names;
     line.remove_prefix(end + 1);

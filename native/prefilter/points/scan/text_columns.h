@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What the columns of a file of text are.
+// Interprets the columns of text files.
 #pragma once
 
 #include <cstddef>
@@ -14,30 +14,30 @@
 
 namespace prefilter {
 
-/// What is known of a column from the lines that were looked at.
+/// Statistics of a column in the lines examined.
 struct TextColumn {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
   bool is_whole = true;
   bool is_double = false;
-  bool begins_unit = true;  // whether it and the next two hold vectors of length 1
+  bool begins_unit = true;  // whether it and the next two columns hold unit vectors
 
   void include(double value);
 };
 
-/// Whether three numbers are a vector of length 1, as files have it.
+/// Whether three numbers are a unit vector, as far as text files round them.
 bool is_unit(const double* vector);
 
-/// Names and types of columns, from what was seen in them: x, y, z come first.
+/// Names and types of unnamed columns, guessed from their values; x, y, z come first.
 std::vector<ScanField> guessed_fields(std::span<const TextColumn> columns);
 
-/// Those of columns whose names a line has, in any order, x, y and z among them. None where there
-/// are fewer or more.
+/// Fields of columns named by a line, in any order, including x, y and z. Empty if the number of
+/// names differs from the number of columns.
 std::vector<ScanField> named_fields(std::span<const TextColumn> columns,
                                     std::span<const std::string> names);
 
-/// The names in a line, between commas, semicolons or tabs, or else blanks; as fields are called
-/// here: in lower case, "red" for "R".
+/// The names in a line, separated by commas, semicolons or tabs, otherwise by blanks, as standard
+/// names in lower case.
 std::vector<std::string> names_in(std::string_view line);
 
 }  // namespace prefilter

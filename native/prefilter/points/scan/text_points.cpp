@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Examines the first lines for separators, column names and column types.
 #include "prefilter/points/scan/text_points.h"
 
 #include <algorithm>
@@ -21,19 +22,20 @@ namespace prefilter {
 namespace {
 
 constexpr std::string_view kSeparators = " \t\r\v\f,;";
-constexpr std::string_view kOtherSeparators = " \t\r\v\f;";  // than commas
-constexpr std::size_t kLinesLookedAt = 4096;
-constexpr std::size_t kBytesLookedAt = 1 << 16;
+constexpr std::string_view kSeparatorsExceptComma = " \t\r\v\f;";  // without commas
+constexpr std::size_t kSampledLines = 4096;
+constexpr std::size_t kSampledBytes = 1 << 16;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// Whether commas in a line are decimal ones: three words or more, where they do not separate, each
-// with one at most, between digits, and no point anywhere. Nothing is told by a line without any.
+// Whether a line has decimal commas: at least three words between other separators, each with at
+// most one comma, which is between digits, and no decimal point. Also true for a line without
+// commas.
 bool has_decimal_commas(std::string_view line) {
   if (line.find('.') != std::string_view::npos) return false;
   int words = 0;
-  for (std::string_view word = take_word(&line, kOtherSeparators); !word.empty();
-       word = take_word(&line, kOtherSeparators)) {
+  for (std::string_view word = take_word(&line, kSeparatorsExceptComma); !word.empty();
+       word = take_word(&line, kSeparatorsExceptComma)) {
     ++words;
     const std::size_t comma = word.find(',');
     if (comma == std::string_view::npos) continue;
@@ -48,12 +50,12 @@ bool has_decimal_commas(std::string_view line) {
 class TextPoints final : public PointSource {
  public:
   explicit TextPoints(const std::string& path) : text_(path) {
-    look_at_bytes();
-    look_at_lines();
+    analyze_bytes();
+    analyze_lines();
     rewind();
   }
 
-  // A file may hold several clouds, each with its count.
+  // Unknown: a file may hold several clouds, each with its count.
   std::optional<std::size_t> count() const override { return std::nullopt; }
   bool has_normals() const override { return fields_.has_normals(); }
   const std::vector<PointAttribute>& attributes() const override { return fields_.attributes(); }
@@ -61,8 +63,8 @@ class TextPoints final : public PointSource {
 
   void rewind() override {
     text_.go_to({begin_, 0});
-    counted_ = 0;
-    found_ = 0;
+    announced_ = 0;
+    read_since_ = 0;
     has_count_ = false;
   }
 
@@ -82,7 +84,7 @@ class TextPoints final : public PointSource {
   }
 
  private:
-  // The numbers of the next line of a point; false at the end of the file.
+  // Parses the next line with a point; false at the end of the file.
   bool next_values() {
     std::string_view line;
     while (text_.next_line(&line)) {
@@ -91,11 +93,11 @@ class TextPoints final : public PointSource {
       if (values_.size() == 1) {
         take_count();
       } else if (!values_.empty()) {
-        if (has_count_ && found_ == counted_) {
-          throw_invalid(text_.where() + ": more points than the " + std::to_string(counted_) +
+        if (has_count_ && read_since_ == announced_) {
+          throw_invalid(text_.where() + ": more points than the " + std::to_string(announced_) +
                         " that were announced");
         }
-        ++found_;
+        ++read_since_;
         return true;
       }
     }
@@ -109,9 +111,9 @@ class TextPoints final : public PointSource {
 
   void take_numbers(std::string_view line) {
     if (!has_decimal_commas_) return text_.parse(line, kSeparators, &values_);
-    with_points_ = line;
-    std::replace(with_points_.begin(), with_points_.end(), ',', '.');
-    text_.parse(with_points_, kOtherSeparators, &values_);
+    line_with_points_ = line;
+    std::replace(line_with_points_.begin(), line_with_points_.end(), ',', '.');
+    text_.parse(line_with_points_, kSeparatorsExceptComma, &values_);
   }
 
   void take_count() {
@@ -120,25 +122,25 @@ class TextPoints final : public PointSource {
       throw_invalid(text_.where() +
                     ": found a single number that is not a count; a point needs x, y and z");
     }
-    if (!has_count_ && found_ > 0) {
+    if (!has_count_ && read_since_ > 0) {
       throw_invalid(text_.where() + ": found 1 number; " + std::to_string(width_) +
                     " are needed, as before");
     }
-    counted_ = static_cast<std::uint64_t>(values_[0]);
-    found_ = 0;
+    announced_ = static_cast<std::uint64_t>(values_[0]);
+    read_since_ = 0;
     has_count_ = true;
   }
 
   void check_count() const {
-    if (has_count_ && found_ < counted_) {
-      throw_invalid(text_.where() + ": ends after " + std::to_string(found_) + " of the " +
-                    std::to_string(counted_) + " points that were announced");
+    if (has_count_ && read_since_ < announced_) {
+      throw_invalid(text_.where() + ": ends after " + std::to_string(read_since_) + " of the " +
+                    std::to_string(announced_) + " points that were announced");
     }
   }
 
-  // Finds how lines end, and what the first ones say of the rest.
-  void look_at_bytes() {
-    const std::span<const std::byte> bytes = text_.bytes().peek(kBytesLookedAt);
+  // Determines the line ending, column names and decimal separator.
+  void analyze_bytes() {
+    const std::span<const std::byte> bytes = text_.bytes().peek(kSampledBytes);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
       throw_invalid(text_.name() + ": text in UTF-16; save it as UTF-8");
@@ -148,13 +150,13 @@ class TextPoints final : public PointSource {
       text_.set_line_end('\r');
     }
     rewind();
-    look_at_names();
-    look_at_commas();
+    find_names();
+    find_decimal_commas();
     rewind();
   }
 
-  // The first line may have the names of the columns, or a comment may.
-  void look_at_names() {
+  // The first line, or a comment in it, may name the columns.
+  void find_names() {
     std::string_view line;
     if (!text_.next_line(&line)) return;
     const std::size_t name = line.find_first_not_of("#/ \t");
@@ -172,7 +174,7 @@ class TextPoints final : public PointSource {
     if (!is_comment) names_line_ = text_.line();
   }
 
-  void look_at_commas() {
+  void find_decimal_commas() {
     constexpr int kLines = 64;
     bool has_commas = false;
     rewind();
@@ -181,7 +183,7 @@ class TextPoints final : public PointSource {
       line = without_comment(line);
       std::string_view rest = line;
       take_word(&rest, kSeparators);
-      // Nothing, or the number of points.
+      // Skips empty lines and counts.
       if (text_.line() == names_line_ || take_word(&rest, kSeparators).empty()) continue;
       has_commas = has_commas || line.find(',') != std::string_view::npos;
       if (!has_decimal_commas(line)) return;
@@ -189,10 +191,10 @@ class TextPoints final : public PointSource {
     has_decimal_commas_ = has_commas;
   }
 
-  void look_at_lines() {
+  void analyze_lines() {
     std::vector<TextColumn> columns;
-    // The rest of what is wrong is found when it is read.
-    for (std::size_t k = 0; k < kLinesLookedAt && next_values(); ++k) {
+    // Damage in later lines is reported on reading.
+    for (std::size_t k = 0; k < kSampledLines && next_values(); ++k) {
       if (k == 0) {
         if (values_.size() < 3) {
           throw_invalid(text_.where() + ": found " + std::to_string(values_.size()) +
@@ -207,7 +209,7 @@ class TextPoints final : public PointSource {
         if (c + 3 <= width_ && !is_unit(&values_[c])) columns[c].begins_unit = false;
       }
     }
-    // A file without points may have none.
+    // A file without points still needs three columns.
     columns.resize(std::max<std::size_t>(columns.size(), 3));
     std::vector<ScanField> fields = named_fields(columns, names_);
     if (fields.empty()) fields = guessed_fields(columns);
@@ -215,17 +217,17 @@ class TextPoints final : public PointSource {
   }
 
   TextReader text_;
-  std::uint64_t begin_ = 0;       // behind a byte order mark
-  std::uint64_t names_line_ = 0;  // that has names; 0 for none
+  std::uint64_t begin_ = 0;       // after a byte order mark
+  std::uint64_t names_line_ = 0;  // line with column names; 0 for none
   std::vector<std::string> names_;
   bool has_decimal_commas_ = false;
-  std::string with_points_;  // a line whose commas are points
+  std::string line_with_points_;  // the line with commas replaced
   PointFields fields_;
   std::size_t width_ = 0;
   std::vector<double> values_;
-  // Of the points that a count has announced, and of those that came since.
-  std::uint64_t counted_ = 0;
-  std::uint64_t found_ = 0;
+  // Number of points announced by a count, and read since.
+  std::uint64_t announced_ = 0;
+  std::uint64_t read_since_ = 0;
   bool has_count_ = false;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Points as lines of numbers: XYZ and PTS.
+// Points as lines of numbers: XYZ, PTS and CSV.
 #pragma once
 
 #include <memory>
@@ -10,16 +10,15 @@
 
 namespace prefilter {
 
-/// A line for each point: x y z and what more there is, separated by blanks, commas or semicolons;
-/// "#" or "//" begins a comment. What follows x y z is told by how many numbers there are, and by
-/// those of the first thousands of lines: three are a color where they are whole, none is negative
-/// and not all are 0 or 1, else a normal; a single one is the intensity, before them (as in PTS)
-/// or after. All others are attributes, "value7" in the seventh column. The first line, or a
-/// comment there, may name the columns instead. Commas are decimal ones where the first lines have
-/// something else between numbers, and no points in them. A line of one number, as PTS files have,
-/// says how many points follow. Throws Error for what is no such file; a line with more or fewer
-/// numbers than the first, and points that are not as many as was said, are found when they are
-/// read.
+/// Opens a text file with a line "x y z ..." per point, separated by blanks, commas or semicolons;
+/// "#" or "//" starts a comment. Further columns are interpreted by their number and by the first
+/// thousands of lines: a triple is a color if its values are integers, not negative and not all 0
+/// or 1, otherwise a normal; a single column is the intensity, before the triples (as in PTS) or
+/// after. All others are attributes, such as "value7" for the seventh column. The first line, or a
+/// comment there, may name the columns instead. Commas are decimal if the first lines have another
+/// separator and no decimal points. A line with one number, as in PTS, gives the count of points
+/// that follow. Throws Error for files in another format; lines with a different number of values,
+/// and wrong counts, are reported on reading.
 std::unique_ptr<PointSource> open_text_points(const std::string& path);
 
 }  // namespace prefilter

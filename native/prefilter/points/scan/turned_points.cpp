@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Reverses normals that point away from their target.
 #include "prefilter/points/turned_points.h"
 
 #include <string>
@@ -25,7 +26,7 @@ void TurnedPoints::rewind() {
   next_ = 0;
 }
 
-Vector3 TurnedPoints::way(const PointBatch& batch, std::size_t i) const {
+Vector3 TurnedPoints::target_direction(const PointBatch& batch, std::size_t i) const {
   if (side_ == Side::kUp) return {0.0, 0.0, 1.0};
   if (viewpoints_.size() == 1) return viewpoints_.front() - batch.positions[i];
   if (!viewpoints_.empty()) return viewpoints_.at(next_ + i) - batch.positions[i];
@@ -39,7 +40,7 @@ bool TurnedPoints::read(std::size_t most, PointBatch* batch) {
     auto& normal = batch->normals[i];
     const Vector3 wide = {static_cast<double>(normal[0]), static_cast<double>(normal[1]),
                           static_cast<double>(normal[2])};
-    if (!(dot(wide, way(*batch, i)) < 0.0)) continue;
+    if (!(dot(wide, target_direction(*batch, i)) < 0.0)) continue;
     for (float& x : normal) x = -x;
   }
   next_ += batch->positions.size();

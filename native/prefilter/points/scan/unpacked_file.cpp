@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// A temporary file without a name.
 #include "prefilter/points/unpacked_file.h"
 
 #include "prefilter/base/io/temporary_file.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Builds the arrangement: intersects pieces, merges nearby intersections into vertices, and counts
+// winding numbers along a ray from each chain.
 #include "prefilter/shapes/outline/arrangement.h"
 
 #include <algorithm>
@@ -20,7 +22,7 @@ double extent(const Box2& box) {
   return std::max(box.high.x - box.low.x, box.high.y - box.low.y);
 }
 
-// The spacing of numbers as large as a box's coordinates.
+// Spacing of floating-point numbers of the size of a box's coordinates.
 double rounding(const Box2& box) {
   if (box.empty()) return 0.0;
   const double largest = std::max(
@@ -30,15 +32,15 @@ double rounding(const Box2& box) {
 
 }  // namespace
 
-// A point of a contour where it meets another.
+// A point of a contour where it meets another, or itself.
 struct Arrangement::Site {
-  PieceId place;
+  PieceId id;
   double parameter = 0.0;
   Point2 point;
   bool is_joint = false;
 };
 
-// Each of them once, and which of them are the same point.
+// Collects sites, each joint of pieces once, and records which sites coincide.
 class Arrangement::SiteList {
  public:
   explicit SiteList(const MonotoneContours& contours) {
@@ -50,7 +52,7 @@ class Arrangement::SiteList {
     joint_sites_.assign(pieces, OutlineChain::kNone);
   }
 
-  void add_meeting(const Site& a, const Site& b) {
+  void add_intersection(const Site& a, const Site& b) {
     const std::uint32_t first = index_of(a);
     const std::uint32_t second = index_of(b);
     same.join(first, second);
@@ -63,7 +65,7 @@ class Arrangement::SiteList {
   std::uint32_t index_of(const Site& site) {
     const auto next = static_cast<std::uint32_t>(sites.size());
     if (site.is_joint) {
-      std::uint32_t& known = joint_sites_[first_joint_[site.place.contour] + site.place.piece];
+      std::uint32_t& known = joint_sites_[first_joint_[site.id.contour] + site.id.piece];
       if (known != OutlineChain::kNone) return known;
       known = next;
     }
@@ -104,20 +106,20 @@ bool Arrangement::follows(const PieceId& a, const PieceId& b) const {
           (b.piece == 0 && a.piece + 1 == contours_.contours()[a.contour].pieces));
 }
 
-std::size_t Arrangement::most_steps(ArrangementEffort effort) const {
-  if (effort == ArrangementEffort::kAny) return SIZE_MAX;
-  constexpr std::size_t kLeast = 1 << 16;
+std::size_t Arrangement::max_steps(ArrangementEffort effort) const {
+  if (effort == ArrangementEffort::kUnbounded) return SIZE_MAX;
+  constexpr std::size_t kMinSteps = 1 << 16;
   constexpr std::size_t kStepsPerPiece = 16;
   std::size_t pieces = 0;
   for (const auto& contour : contours_.contours()) pieces += contour.pieces;
-  return kLeast + kStepsPerPiece * pieces;
+  return kMinSteps + kStepsPerPiece * pieces;
 }
 
-CutOutcome Arrangement::collect_sites(std::size_t most_steps, const Progress& progress,
+CutOutcome Arrangement::collect_sites(std::size_t max_steps, const Progress& progress,
                                       SiteList* list) const {
   std::vector<std::pair<PieceId, PieceId>> pairs;
-  if (!tree_.append_pairs(most_steps, &pairs)) return CutOutcome::kTooMany;
-  std::vector<Meeting> meetings;
+  if (!tree_.append_pairs(max_steps, &pairs)) return CutOutcome::kTooMany;
+  std::vector<CurveIntersection> intersections;
   std::size_t steps = 0;
   constexpr std::size_t kPairsPerReport = 1 << 12;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -130,56 +132,56 @@ CutOutcome Arrangement::collect_sites(std::size_t most_steps, const Progress& pr
     const MonotonePiece second_piece = contours_.piece(contours_.contours()[b.contour], b.piece);
     const CurvePiece first = curve_piece(first_piece, a.contour);
     const CurvePiece second = curve_piece(second_piece, b.contour);
-    if (follows(a, b) ? are_apart_but_for_joint(first, second)
-                      : are_apart(first, second, precision_))
+    if (follows(a, b) ? meet_only_at_joint(first, second) : are_apart(first, second, precision_))
       continue;
-    // Of curves they take more steps than of lines.
+    // Intersecting curves costs about this many times as much as intersecting lines.
     constexpr std::size_t kStepsOfCurves = 8;
     steps += first.curve.degree() == 1 && second.curve.degree() == 1 ? 1 : kStepsOfCurves;
-    if (steps > most_steps) return CutOutcome::kTooMany;
-    meetings.clear();
-    if (!append_meetings(first, second, precision_, &meetings)) return CutOutcome::kUnclear;
-    for (const Meeting& meeting : meetings) {
-      list->add_meeting(site_at(a, first_piece, meeting.a, meeting.point),
-                        site_at(b, second_piece, meeting.b, meeting.point));
+    if (steps > max_steps) return CutOutcome::kTooMany;
+    intersections.clear();
+    if (!append_intersections(first, second, precision_, &intersections))
+      return CutOutcome::kUnclear;
+    for (const CurveIntersection& intersection : intersections) {
+      list->add_intersection(site_at(a, first_piece, intersection.a, intersection.point),
+                             site_at(b, second_piece, intersection.b, intersection.point));
     }
   }
   return CutOutcome::kCut;
 }
 
-// Sites that are near each other become one vertex.
+// Merges sites near each other into one vertex.
 void Arrangement::merge_sites(CancelCheck* cancel_check, SiteList* list) {
   const std::vector<Site>& sites = list->sites;
   DisjointSets<std::uint32_t>& same = list->same;
-  struct PlaceHash {
-    std::size_t operator()(const std::pair<std::int64_t, std::int64_t>& place) const {
-      return static_cast<std::size_t>(place.first) * 0x9e3779b97f4a7c15u ^
-             static_cast<std::size_t>(place.second) * 0xc2b2ae3d27d4eb4fu;
+  struct GridCellHash {
+    std::size_t operator()(const std::pair<std::int64_t, std::int64_t>& cell) const {
+      return static_cast<std::size_t>(cell.first) * 0x9e3779b97f4a7c15u ^
+             static_cast<std::size_t>(cell.second) * 0xc2b2ae3d27d4eb4fu;
     }
   };
-  std::unordered_map<std::pair<std::int64_t, std::int64_t>, std::uint32_t, PlaceHash> places;
-  // Differences of points that are far away from each other may not be finite.
-  const auto cell_at = [](double place) {
-    constexpr double kMost = 1e18;
-    return std::abs(place) < kMost ? static_cast<std::int64_t>(std::floor(place)) : 0;
+  std::unordered_map<std::pair<std::int64_t, std::int64_t>, std::uint32_t, GridCellHash> cells;
+  // Differences of distant points can overflow; then any cell will do.
+  const auto cell_at = [](double coordinate) {
+    constexpr double kMaxCell = 1e18;
+    return std::abs(coordinate) < kMaxCell ? static_cast<std::int64_t>(std::floor(coordinate)) : 0;
   };
-  const auto place_of = [&](const Point2& point) {
+  const auto cell_of = [&](const Point2& point) {
     const Point2 off = point - contours_.box().low;
     return std::pair{cell_at(off.x / precision_), cell_at(off.y / precision_)};
   };
   for (std::uint32_t i = 0; i < sites.size(); ++i) {
     cancel_check->step();
     const Point2& point = sites[i].point;
-    const auto place = place_of(point);
-    const auto [found, is_new] = places.try_emplace(place, i);
+    const auto cell = cell_of(point);
+    const auto [entry, is_new] = cells.try_emplace(cell, i);
     if (!is_new) {
-      same.join(found->second, i);
+      same.join(entry->second, i);
       continue;
     }
     for (std::int64_t x = -1; x <= 1; ++x) {
       for (std::int64_t y = -1; y <= 1; ++y) {
-        const auto near = places.find({place.first + x, place.second + y});
-        if (near == places.end()) continue;
+        const auto near = cells.find({cell.first + x, cell.second + y});
+        if (near == cells.end()) continue;
         const Point2 off = sites[near->second].point - point;
         if (elementary::hypot(off.x, off.y) <= precision_) same.join(near->second, i);
       }
@@ -187,7 +189,7 @@ void Arrangement::merge_sites(CancelCheck* cancel_check, SiteList* list) {
   }
 
   const std::vector<std::uint32_t> roots = std::move(same).roots();
-  // A vertex is where one of its joints is, if it has any, so that this stays in its place.
+  // A vertex takes the position of one of its joints, if it has any, so that joints do not move.
   std::vector<std::uint32_t> order(sites.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto key = [&](std::uint32_t i) {
@@ -203,22 +205,22 @@ void Arrangement::merge_sites(CancelCheck* cancel_check, SiteList* list) {
     if (i == 0 || roots[order[i]] != roots[order[i - 1]]) {
       vertices_.push_back(site.point);
     }
-    cuts_.push_back({site.place, site.parameter, static_cast<std::uint32_t>(vertices_.size()) - 1});
+    cuts_.push_back({site.id, site.parameter, static_cast<std::uint32_t>(vertices_.size()) - 1});
   }
 }
 
 CutOutcome Arrangement::cut(ArrangementEffort effort, const Progress& progress) {
   SiteList list(contours_);
-  const CutOutcome outcome = collect_sites(most_steps(effort), progress, &list);
+  const CutOutcome outcome = collect_sites(max_steps(effort), progress, &list);
   if (outcome != CutOutcome::kCut) return outcome;
   CancelCheck cancel_check(progress);
   merge_sites(&cancel_check, &list);
   std::sort(cuts_.begin(), cuts_.end(), [&](const Cut& a, const Cut& b) {
     cancel_check.step();
-    return std::tie(a.place, a.parameter, a.vertex) < std::tie(b.place, b.parameter, b.vertex);
+    return std::tie(a.id, a.parameter, a.vertex) < std::tie(b.id, b.parameter, b.vertex);
   });
   const auto last = std::unique(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) {
-    return a.place == b.place && a.parameter == b.parameter && a.vertex == b.vertex;
+    return a.id == b.id && a.parameter == b.parameter && a.vertex == b.vertex;
   });
   cuts_.erase(last, cuts_.end());
   make_chains(&cancel_check);
@@ -231,7 +233,7 @@ void Arrangement::make_chains(CancelCheck* cancel_check) {
   const auto cut_count = static_cast<std::uint32_t>(cuts_.size());
   for (std::uint32_t c = 0; c < contours_.contours().size(); ++c) {
     const std::uint32_t first = cut;
-    while (cut < cut_count && cuts_[cut].place.contour == c) ++cut;
+    while (cut < cut_count && cuts_[cut].id.contour == c) ++cut;
     if (cut == first) {
       chains_.push_back({c, OutlineChain::kNone, OutlineChain::kNone});
       continue;
@@ -244,7 +246,7 @@ void Arrangement::make_chains(CancelCheck* cancel_check) {
   }
 }
 
-// Shorter than what counts as one point, though it may have ends of its own.
+// Whether a chain from a vertex back to itself stays within the size of one point.
 bool Arrangement::is_negligible(const OutlineChain& chain) const {
   if (cuts_[chain.begin_cut].vertex != cuts_[chain.end_cut].vertex) return false;
   const Point2& vertex = vertices_[cuts_[chain.begin_cut].vertex];
@@ -261,15 +263,15 @@ bool Arrangement::is_negligible(const OutlineChain& chain) const {
 }
 
 std::optional<Arrangement::Part> Arrangement::only_part(const OutlineChain& chain) const {
-  std::optional<Part> found;
-  bool one = true;
+  std::optional<Part> only;
+  bool is_only = true;
   visit_parts(chain, [&](const Part& part) {
-    one = !found;
-    found = part;
-    return one;
+    is_only = !only;
+    only = part;
+    return is_only;
   });
-  if (!one) found.reset();
-  return found;
+  if (!is_only) only.reset();
+  return only;
 }
 
 void Arrangement::group_chains(CancelCheck* cancel_check) {
@@ -313,18 +315,18 @@ void Arrangement::group_chains(CancelCheck* cancel_check) {
   }
 }
 
-// The part of a chain that reaches farthest across one axis, which tells best on which side of it
-// something is; of so many of them.
+// The part of a chain that extends farthest along one axis, among its first kMaxPartsCompared
+// parts. Its middle separates both sides of the chain most clearly.
 struct Arrangement::Reach {
   Part part;
-  Point2 step;  // from its beginning to its end
+  Point2 step;  // from its begin to its end
 };
 
 std::optional<Arrangement::Reach> Arrangement::farthest_part(const OutlineChain& chain) const {
-  constexpr int kMostLooked = 32;
+  constexpr int kMaxPartsCompared = 32;
   std::optional<Reach> best;
   double best_reach = -1.0;
-  int looked = 0;
+  int compared = 0;
   visit_parts(chain, [&](const Part& part) {
     const Curve curve = contours_.curve(contours_.contours()[chain.contour], part.piece);
     const MonotonePiece& piece = part.piece;
@@ -337,7 +339,7 @@ std::optional<Arrangement::Reach> Arrangement::farthest_part(const OutlineChain&
       best = {part, step};
       best_reach = reach;
     }
-    return ++looked < kMostLooked;
+    return ++compared < kMaxPartsCompared;
   });
   return best;
 }
@@ -350,7 +352,7 @@ void Arrangement::visit(std::size_t first, std::size_t last, const Visitor& visi
     const OutlineChain& chain = chains_[i];
     const std::uint32_t group = group_of_[i];
     if (group != OutlineChain::kNone && groups_[group].front() != i) continue;
-    std::span<const std::uint32_t> others;  // that run along it
+    std::span<const std::uint32_t> others;  // overlap this chain
     if (group != OutlineChain::kNone) others = std::span(groups_[group]).subspan(1);
 
     const std::optional<Reach> best = farthest_part(chain);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Contours cut where they meet: chains of curves, and what lies on both sides of each.
+// Arrangement of contours: they are cut into chains at their intersections, and the winding numbers
+// on both sides of each chain are counted.
 #pragma once
 
 #include <functional>
@@ -9,17 +10,16 @@
 #include <vector>
 
 #include "prefilter/base/cancel_check.h"
-#include "prefilter/shapes/outline/meetings.h"
+#include "prefilter/shapes/outline/curve_intersections.h"
 #include "prefilter/shapes/outline/monotone_contours.h"
 #include "prefilter/shapes/outline/run_tree.h"
 
 namespace prefilter {
 
-/// What to try as the precision of an arrangement, one after the other.
-inline constexpr double kPrecisions[] = {0x1p-36, 0x1p-30};
+/// Precisions to try in turn, relative to the size of the outlines.
+inline constexpr double kArrangementPrecisions[] = {0x1p-36, 0x1p-30};
 
-/// A contour from a place where it meets another one, or itself, to the next such place; or all of
-/// it, where there is none.
+/// Part of a contour between consecutive intersections, or the whole contour if it has none.
 struct OutlineChain {
   static constexpr std::uint32_t kNone = UINT32_MAX;
 
@@ -28,52 +28,52 @@ struct OutlineChain {
   std::uint32_t end_cut = kNone;
 };
 
-/// A chain as a part of a boundary, against its own direction or along it.
+/// A chain as part of a boundary; `reversed` if the boundary runs against it.
 struct BoundaryChain {
   std::uint32_t chain = 0;
   bool reversed = false;
 };
 
-/// Steps that an arrangement may take.
+/// Limits on the work done for an arrangement.
 enum class ArrangementEffort : std::uint8_t {
-  kAny,  // the square of the number of curves, and more, where all of them cross
-  /// In proportion to that number: what outlines take that mostly lie beside each other.
+  kUnbounded,  // no limit; quadratic, or more, in the number of curves if all of them cross
+  /// Linear in the number of curves, which suffices for outlines that rarely cross.
   kBounded,
 };
 
-/// Whether contours could be cut where they meet.
+/// Result of cutting contours at their intersections; kUnclear if rounding makes it ambiguous.
 enum class CutOutcome : std::uint8_t { kCut, kUnclear, kTooMany };
 
 class Arrangement {
  public:
-  /// Points closer than `precision` times the size of the outlines, whose layers their indices are,
-  /// count as one. The outlines must outlive it.
+  /// Outline i is layer i. Points closer than `precision` times the size of the outlines count as
+  /// one. The outlines must outlive the arrangement.
   Arrangement(std::span<const Outline* const> outlines, double precision);
   Arrangement(const Arrangement&) = delete;
   Arrangement& operator=(const Arrangement&) = delete;
 
-  /// Cuts contours where they meet, if that can be told within the effort.
+  /// Cuts the contours at their intersections, within the limits of `effort`.
   CutOutcome cut(ArrangementEffort effort, const Progress& progress = {});
-  /// How many steps what follows a cut may take.
-  std::size_t most_steps(ArrangementEffort effort) const;
+  /// Largest number of steps for the work after `cut`.
+  std::size_t max_steps(ArrangementEffort effort) const;
 
-  /// Whether all contours are apart from each other and from themselves, after `cut`.
-  bool all_whole() const { return cuts_.empty(); }
+  /// Whether no contour meets another one or itself; valid after `cut`.
+  bool has_no_cuts() const { return cuts_.empty(); }
   std::size_t chain_count() const { return chains_.size(); }
 
-  /// Is given a chain, and the winding numbers to its right and to its left. Of chains that run
-  /// along each other it gets one.
+  /// Receives a chain and the winding numbers to its right and to its left. Only one of several
+  /// overlapping chains is visited.
   using Visitor =
       std::function<void(std::uint32_t, const LayerWindings& right, const LayerWindings& left)>;
   /// Calls the visitor for chains of [first, last), in order.
   void visit(std::size_t first, std::size_t last, const Visitor& visitor) const;
 
-  /// Appends the closed contours that chains make up. Returns false where they do not.
+  /// Appends the closed contours formed by the chains. Returns false if the chains do not close.
   bool trace(std::span<const BoundaryChain> boundary, Outline* outline) const;
 
  private:
   struct Cut {
-    PieceId place;
+    PieceId id;
     double parameter = 0.0;
     std::uint32_t vertex = 0;
   };
@@ -90,7 +90,7 @@ class Arrangement {
 
   CurvePiece curve_piece(const MonotonePiece& piece, std::uint32_t contour) const;
   bool follows(const PieceId& a, const PieceId& b) const;
-  CutOutcome collect_sites(std::size_t most_steps, const Progress& progress, SiteList* list) const;
+  CutOutcome collect_sites(std::size_t max_steps, const Progress& progress, SiteList* list) const;
   Site site_at(const PieceId& id, const MonotonePiece& piece, double parameter,
                const Point2& point) const;
   void merge_sites(CancelCheck* cancel_check, SiteList* list);
@@ -109,11 +109,11 @@ class Arrangement {
   std::vector<Cut> cuts_;  // by contour, piece and parameter
   std::vector<Point2> vertices_;
   std::vector<OutlineChain> chains_;
-  std::vector<std::uint32_t> group_of_;             // a chain's; those along each other have one
+  std::vector<std::uint32_t> group_of_;  // each chain's group of overlapping chains, or kNone
   std::vector<std::vector<std::uint32_t>> groups_;  // of two chains or more
 };
 
-// Calls visit for the parts of pieces that a chain consists of, until that returns false.
+// Calls `visit` for each piece, or part of one, along a chain until it returns false.
 template <typename Visit>
 void Arrangement::visit_parts(const OutlineChain& chain, const Visit& visit) const {
   const auto& contour = contours_.contours()[chain.contour];
@@ -125,12 +125,12 @@ void Arrangement::visit_parts(const OutlineChain& chain, const Visit& visit) con
     return;
   }
   const Cut& end = cuts_[chain.end_cut];
-  std::uint32_t index = cuts_[chain.begin_cut].place.piece;
+  std::uint32_t index = cuts_[chain.begin_cut].id.piece;
   double from = cuts_[chain.begin_cut].parameter;
   bool wraps = chain.end_cut <= chain.begin_cut;
   while (true) {
     const MonotonePiece piece = contours_.piece(contour, index);
-    if (index == end.place.piece && !wraps) {
+    if (index == end.id.piece && !wraps) {
       if (end.parameter > from) visit(Part{index, piece, from, end.parameter});
       return;
     }

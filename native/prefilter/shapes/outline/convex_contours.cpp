@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Pairs of contours are found in a grid of boxes, separated by a line along an edge, or nested.
 #include "prefilter/shapes/outline/convex_contours.h"
 
 #include <algorithm>
@@ -11,11 +12,11 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kMostPoints = 64;
-constexpr double kStraight =
-    1e-24;  // the square of a turn, in radians, that rounding may have made
+// More points cost more than the arrangement.
+constexpr std::size_t kMaxConvexPoints = 64;
+constexpr double kMaxStraightTurn = 1e-24;  // squared radians; the effect of rounding
 
-struct Convex {
+struct ConvexContour {
   std::span<const Point2> points;  // the control polygon; the last point may be the first
   std::span<const Outline::Segment> segments;
   std::uint32_t first_point = 0;
@@ -27,11 +28,11 @@ struct Convex {
   const Point2& next(std::size_t i) const { return points[i + 1 == points.size() ? 0 : i + 1]; }
 };
 
-// A closed polygon that turns one way only, and around once, is convex; and so are curves with such
-// a control polygon, as no line crosses them more often than that.
-bool measure(Convex* contour) {
+// A closed polygon that turns only one way, and once around, is convex. Curves with such a control
+// polygon are convex, too: a line crosses them no more often than the polygon.
+bool measure(ConvexContour* contour) {
   const std::size_t count = contour->points.size();
-  if (count < 3 || count > kMostPoints) return false;
+  if (count < 3 || count > kMaxConvexPoints) return false;
   double sign = 0.0;
   Point2 last = contour->points[0] - contour->points[count - 1];
   for (std::size_t i = count - 1; last == Point2{} && i > 0; --i) {
@@ -45,7 +46,7 @@ bool measure(Convex* contour) {
     const Point2 step = contour->next(i) - contour->points[i];
     if (step == Point2{}) continue;
     const double turn = cross(last, step);
-    if (turn * turn <= kStraight * dot(last, last) * dot(step, step)) {
+    if (turn * turn <= kMaxStraightTurn * dot(last, last) * dot(step, step)) {
       if (dot(last, step) < 0.0) return false;
     } else {
       if (turn * sign < 0.0) return false;
@@ -63,8 +64,9 @@ bool measure(Convex* contour) {
   return sign != 0.0 && turns_back == 2;
 }
 
-// Whether a line along an edge of `a` has `b` outside. The edge that looks to `b` most comes first.
-bool is_separated(const Convex& a, const Convex& b, double margin) {
+// Whether a line along an edge of `a` separates `b` from it. Starts with the edge that faces `b`
+// most.
+bool is_separated(const ConvexContour& a, const ConvexContour& b, double margin) {
   const auto is_outside_of = [&](std::size_t edge) {
     const Point2& origin = a.points[edge];
     const Point2 step = a.sign * (a.next(edge) - origin);
@@ -94,9 +96,9 @@ bool is_separated(const Convex& a, const Convex& b, double margin) {
   return false;
 }
 
-// Whether `outer`, of which no more than the polygon of its curves' ends and middles is looked at,
-// holds `inner`.
-bool holds(const Convex& outer, const Convex& inner) {
+// Whether `outer` contains `inner`. Tests a polygon of the ends and midpoints of the curves of
+// `outer`.
+bool holds(const ConvexContour& outer, const ConvexContour& inner) {
   const Box2& a = outer.box;
   const Box2& b = inner.box;
   if (!(a.low.x <= b.low.x && a.low.y <= b.low.y && a.high.x >= b.high.x && a.high.y >= b.high.y)) {
@@ -124,9 +126,8 @@ bool boxes_meet(const Box2& a, const Box2& b) {
 
 bool are_equal(const Box2& a, const Box2& b) { return a.low == b.low && a.high == b.high; }
 
-// Says of two contours how often the one winds around the other, if it is either all around or not
-// at all.
-bool settle(Convex* a, Convex* b, double margin) {
+// Counts how often one contour winds around the other; false unless they are nested or disjoint.
+bool count_winding(ConvexContour* a, ConvexContour* b, double margin) {
   if (!boxes_meet(a->box, b->box)) return true;
   if (is_separated(*a, *b, margin) || is_separated(*b, *a, margin)) return true;
   if (are_equal(a->box, b->box)) return false;
@@ -140,12 +141,12 @@ bool settle(Convex* a, Convex* b, double margin) {
   return true;
 }
 
-// Contours by the cells of a grid that their boxes meet.
-class Bins {
+// A grid that lists for each cell the contours whose boxes overlap it.
+class BoxGrid {
  public:
-  explicit Bins(std::span<const Convex> contours) {
+  explicit BoxGrid(std::span<const ConvexContour> contours) {
     Point2 sizes;
-    for (const Convex& contour : contours) {
+    for (const ConvexContour& contour : contours) {
       whole_.include(contour.box.low);
       whole_.include(contour.box.high);
       sizes = sizes + (contour.box.high - contour.box.low);
@@ -157,7 +158,7 @@ class Bins {
     rows_ = static_cast<int>(std::clamp(count * extent.y / sizes.y, 1.0, most));
     scale_ = {columns_ / extent.x, rows_ / extent.y};
     first_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
-    for (const Convex& contour : contours) {
+    for (const ConvexContour& contour : contours) {
       visit(contour.box, [&](std::size_t cell) { ++first_[cell + 1]; });
     }
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
@@ -172,7 +173,7 @@ class Bins {
   std::span<const std::uint32_t> members(std::size_t cell) const {
     return std::span(members_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
   }
-  /// Of all cells that two boxes have in common, the one that counts.
+  /// The one cell, of all that two boxes share, in which the pair is tested.
   std::size_t common_cell(const Box2& a, const Box2& b) const {
     return cell_of({std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)});
   }
@@ -204,29 +205,29 @@ class Bins {
   std::vector<std::uint32_t> members_;
 };
 
-bool settle_all(std::span<Convex> contours) {
-  const Bins bins(contours);
+bool count_all_windings(std::span<ConvexContour> contours) {
+  const BoxGrid bins(contours);
   Box2 whole;
-  for (const Convex& contour : contours) {
+  for (const ConvexContour& contour : contours) {
     whole.include(contour.box.low);
     whole.include(contour.box.high);
   }
   const Point2 extent = whole.high - whole.low;
   const double margin = std::ldexp(std::max(extent.x, extent.y), -44);
   std::size_t steps = 0;
-  const std::size_t most_steps = 256 * contours.size() + 1024;
+  const std::size_t max_steps = 256 * contours.size() + 1024;
   for (std::size_t cell = 0; cell < bins.cells(); ++cell) {
     const auto members = bins.members(cell);
     for (std::size_t i = 0; i < members.size(); ++i) {
-      Convex& a = contours[members[i]];
+      ConvexContour& a = contours[members[i]];
       for (std::size_t j = i + 1; j < members.size(); ++j) {
-        Convex& b = contours[members[j]];
+        ConvexContour& b = contours[members[j]];
         if (!boxes_meet(a.box, b.box) || bins.common_cell(a.box, b.box) != cell) continue;
-        if (!settle(&a, &b, margin)) return false;
+        if (!count_winding(&a, &b, margin)) return false;
       }
       steps += members.size() - i;
     }
-    if (steps > most_steps) return false;
+    if (steps > max_steps) return false;
   }
   return true;
 }
@@ -234,10 +235,10 @@ bool settle_all(std::span<Convex> contours) {
 }  // namespace
 
 std::optional<std::vector<ContourUse>> convex_contour_uses(const Outline& outline, FillRule rule) {
-  std::vector<Convex> contours;
+  std::vector<ConvexContour> contours;
   contours.reserve(outline.contour_count());
   for (std::size_t c = 0; c < outline.contour_count(); ++c) {
-    Convex contour;
+    ConvexContour contour;
     contour.segments = outline.contour(c);
     if (contour.segments.empty()) continue;
     contour.first_point = contour.segments.front().first;
@@ -249,9 +250,9 @@ std::optional<std::vector<ContourUse>> convex_contour_uses(const Outline& outlin
     if (!measure(&contour)) return std::nullopt;
     contours.push_back(contour);
   }
-  if (contours.size() > 1 && !settle_all(contours)) return std::nullopt;
+  if (contours.size() > 1 && !count_all_windings(contours)) return std::nullopt;
   std::vector<ContourUse> uses(outline.contour_count(), ContourUse::kKept);
-  for (const Convex& contour : contours) {
+  for (const ConvexContour& contour : contours) {
     const int around = contour.winding_around;
     const bool is_outside = is_filled(around, rule);
     const bool is_inside = is_filled(around + (contour.sign > 0.0 ? 1 : -1), rule);

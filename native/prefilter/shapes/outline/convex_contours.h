@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Contours whose overlaps are seen at a glance: convex ones, apart from each other or one in
-// another.
+// Fast path for convex contours that are disjoint or nested, whose overlaps need no arrangement.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +11,12 @@
 
 namespace prefilter {
 
-/// What becomes of a contour that meets no other.
+/// What resolving does to a contour that meets no other.
 enum class ContourUse : std::uint8_t { kKept, kReversed, kDropped };
 
-/// For every contour what `resolve` makes of it, where all are convex, of few points, and each two
-/// of them have no inner point in common, or one holds the other; they may touch. Nothing where
-/// that is not so, or not seen soon.
+/// The use of every contour, if all are convex with few points, and any two have disjoint interiors
+/// or one contains the other; they may touch. Nothing if this does not hold or takes too long to
+/// show.
 std::optional<std::vector<ContourUse>> convex_contour_uses(const Outline& outline, FillRule rule);
 
 }  // namespace prefilter

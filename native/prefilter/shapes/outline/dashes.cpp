@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Dashes by arc length: adaptive Gauss-Legendre quadrature, inverted by bisection.
 #include "prefilter/shapes/outline/dashes.h"
 
 #include <array>
@@ -10,18 +11,18 @@
 namespace prefilter {
 namespace {
 
-// Gauss and Legendre's rule of eight points.
+// Gauss-Legendre quadrature with eight nodes.
 double gauss_length(const Curve& curve, double from, double to) {
-  constexpr std::array<double, 4> kPlaces = {0.1834346424956498, 0.5255324099163290,
-                                             0.7966664774136267, 0.9602898564975363};
+  constexpr std::array<double, 4> kNodes = {0.1834346424956498, 0.5255324099163290,
+                                            0.7966664774136267, 0.9602898564975363};
   constexpr std::array<double, 4> kWeights = {0.3626837833783620, 0.3137066458778873,
                                               0.2223810344533745, 0.1012285362903763};
   const double middle = 0.5 * (from + to);
   const double half = 0.5 * (to - from);
   double sum = 0.0;
-  for (std::size_t i = 0; i < kPlaces.size(); ++i) {
-    sum += kWeights[i] * (length(derivative_at(curve, middle - half * kPlaces[i])) +
-                          length(derivative_at(curve, middle + half * kPlaces[i])));
+  for (std::size_t i = 0; i < kNodes.size(); ++i) {
+    sum += kWeights[i] * (length(derivative_at(curve, middle - half * kNodes[i])) +
+                          length(derivative_at(curve, middle + half * kNodes[i])));
   }
   return half * sum;
 }
@@ -37,18 +38,18 @@ double refined_length(const Curve& curve, double from, double to, double whole, 
          refined_length(curve, middle, to, second, depth - 1);
 }
 
-// Where a curve from a parameter on has gone a way.
-double parameter_after(const Curve& curve, double from, double way, double whole_way) {
-  if (curve.degree() == 1) return from + (1.0 - from) * (way / whole_way);
+// The parameter at an arc length from `from`; `rest_length` is the arc length from `from` to 1.
+double parameter_after(const Curve& curve, double from, double distance, double rest_length) {
+  if (curve.degree() == 1) return from + (1.0 - from) * (distance / rest_length);
   double low = from;
   double high = 1.0;
-  double gone = 0.0;  // up to low
-  double left = whole_way;
+  double passed = 0.0;  // arc length up to low
+  double left = rest_length;
   while (high - low > 1e-6) {
     const double middle = 0.5 * (low + high);
     const double first = arc_length(curve, low, middle);
-    if (gone + first <= way) {
-      gone += first;
+    if (passed + first <= distance) {
+      passed += first;
       left -= first;
       low = middle;
     } else {
@@ -56,10 +57,10 @@ double parameter_after(const Curve& curve, double from, double way, double whole
       high = middle;
     }
   }
-  return left > 0.0 ? std::min(high, low + (high - low) * ((way - gone) / left)) : low;
+  return left > 0.0 ? std::min(high, low + (high - low) * ((distance - passed) / left)) : low;
 }
 
-// Walks along a path from dash to gap to dash.
+// Walks along a path through alternating dashes and gaps.
 class Dasher {
  public:
   Dasher(std::span<const double> pattern, double offset, std::vector<StrokePath>* dashes)

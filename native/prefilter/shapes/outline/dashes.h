@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Curves in a row, and their dashes.
+// Paths to stroke, and their dashes.
 #pragma once
 
 #include <span>
@@ -10,20 +10,21 @@
 
 namespace prefilter {
 
-/// A pen's way: curves, each from where the last one ends.
+/// Consecutive curves that are stroked as one path.
 struct StrokePath {
   std::vector<PartOfCurve> curves;
   bool is_closed = false;
-  /// What caps go by where there is no curve.
+  /// Position and direction of the caps of a path without curves.
   Point2 point;
   Point2 direction{1.0, 0.0};
 };
 
-/// The arc length of a curve between two parameters.
+/// Arc length of a curve between two parameters.
 double arc_length(const Curve& curve, double from, double to);
 
-/// The dashes along a path: `pattern` is dashes and gaps in turns, an even number of them, and
-/// begins `offset` >= 0 into it. Where a closed path begins and ends within dashes, they are one.
+/// Appends the dashes along a path. `pattern` alternates dashes and gaps, an even number in all,
+/// and the path starts at `offset` >= 0 in it. If a closed path begins and ends within a dash,
+/// these two parts are joined.
 void append_dashes(const StrokePath& path, std::span<const double> pattern, double offset,
                    std::vector<StrokePath>* dashes);
 

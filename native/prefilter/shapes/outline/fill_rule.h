@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What a fill rule says of a winding number.
+// Fill rules applied to winding numbers.
 #pragma once
 
 #include "prefilter/base/outline.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Cuts segments at the extrema of both coordinates, the roots of the derivative in Bernstein form,
+// and groups consecutive pieces into monotone runs.
 #include "prefilter/shapes/outline/monotone_contours.h"
 
 #include <algorithm>
@@ -8,10 +10,11 @@
 namespace prefilter {
 namespace {
 
-constexpr double kNearEnd = 1e-9;  // a turn so near an end is off by its square
+constexpr double kMinParameterStep =
+    1e-9;  // a coordinate differs from its extremum by the square of this
 
-// Where a coordinate of a curve turns back.
-void find_turns(const Curve& curve, double Point2::*axis, std::vector<double>* turns) {
+// Appends the parameters of a coordinate's extrema.
+void append_extrema(const Curve& curve, double Point2::*axis, std::vector<double>* turns) {
   const auto& p = curve.controls;
   const int degree = curve.degree();
   std::array<double, Outline::kMostDegree> slope;
@@ -68,7 +71,7 @@ void MonotoneContours::add(Contour contour) {
   const auto segments = contour.outline->contour(contour.index);
   if (segments.empty()) return;
   contour.first_run = static_cast<std::uint32_t>(runs_.size());
-  // A degree is 1 at the least, so this sum says that all are.
+  // Degrees are at least 1, so this sum shows that all of them are 1.
   const bool lines = segments.back().first + static_cast<std::uint32_t>(segments.back().degree) -
                          segments.front().first ==
                      segments.size();
@@ -107,7 +110,7 @@ void MonotoneContours::cut(Contour* contour) {
   contour->cut_pieces = keep<MonotonePiece>(cut_);
 }
 
-// Parts that are points are left out; their neighbors in the segment take over their parameters.
+// Parts without an extent are left out; neighbors in the segment take over their parameters.
 void MonotoneContours::cut_segment(const Curve& curve, std::uint32_t segment) {
   if (curve.degree() == 1 || is_monotone(curve.controls)) {
     if (curve.begin() == curve.end()) return;
@@ -116,10 +119,10 @@ void MonotoneContours::cut_segment(const Curve& curve, std::uint32_t segment) {
     return;
   }
   turns_.clear();
-  find_turns(curve, &Point2::x, &turns_);
-  find_turns(curve, &Point2::y, &turns_);
+  append_extrema(curve, &Point2::x, &turns_);
+  append_extrema(curve, &Point2::y, &turns_);
   if (turns_.empty()) {
-    // Its controls may turn where it does not.
+    // The control polygon may turn back although the curve does not.
     if (curve.begin() == curve.end()) return;
     cut_.push_back({segment, 0.0, 1.0, curve.controls});
     joints_.push_back(curve.end());
@@ -130,24 +133,24 @@ void MonotoneContours::cut_segment(const Curve& curve, std::uint32_t segment) {
   const std::size_t first = cut_.size();
   double from = 0.0;
   for (const double to : turns_) {
-    if (to < 1.0 && (to - from < kNearEnd || 1.0 - to < kNearEnd)) continue;
+    if (to < 1.0 && (to - from < kMinParameterStep || 1.0 - to < kMinParameterStep)) continue;
     const PartOfCurve part(curve, from, to);
-    const std::span<const Point2> found = part.curve().controls;
-    const Point2 end = to == 1.0 ? curve.end() : found.back();
+    const std::span<const Point2> part_controls = part.curve().controls;
+    const Point2 end = to == 1.0 ? curve.end() : part_controls.back();
     if (joints_.back() == end) {
       if (to == 1.0 && cut_.size() > first) cut_.back().to = 1.0;
       continue;
     }
-    Point2* controls = keep(found);
+    Point2* controls = keep(part_controls);
     controls[0] = joints_.back();
-    controls[found.size() - 1] = end;
-    cut_.push_back({segment, from, to, {controls, found.size()}});
+    controls[part_controls.size() - 1] = end;
+    cut_.push_back({segment, from, to, {controls, part_controls.size()}});
     joints_.push_back(end);
     from = to;
   }
 }
 
-// Returns false where a piece of the contour is a point.
+// Groups the pieces into runs. Returns false if one of the contour's pieces has no extent.
 bool MonotoneContours::add_runs(Contour* contour) {
   const Point2* joints = contour->joints;
   const std::uint32_t count = contour->pieces;

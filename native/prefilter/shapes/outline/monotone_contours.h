@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Contours cut into pieces along which neither x nor y turns back.
+// Contours cut into pieces that are monotone in x and in y.
 #pragma once
 
 #include <cstdint>
@@ -21,12 +21,12 @@ struct MonotonePiece {
   std::uint32_t segment = kClosing;  // of its contour
   double from = 0.0;                 // the segment's parameters
   double to = 1.0;
-  std::span<const Point2> controls;  // of the part; its hull holds it
+  std::span<const Point2> controls;  // of the part; their hull contains it
 };
 
-/// Pieces in a row that all go the same way in x, and in y.
+/// Consecutive pieces that are monotone in the same directions.
 struct MonotoneRun {
-  const Point2* joints = nullptr;  // the ends of its pieces: one more than those
+  const Point2* joints = nullptr;  // the pieces + 1 ends
   std::uint32_t pieces = 0;
   std::uint32_t contour = 0;
   std::uint32_t first_piece = 0;
@@ -46,8 +46,8 @@ class MonotoneContours {
     std::uint32_t layer = 0;  // the outline's index
     std::uint32_t index = 0;  // in the outline
     std::uint32_t pieces = 0;
-    const Point2* joints = nullptr;             // pieces + 1; the last is the first
-    const MonotonePiece* cut_pieces = nullptr;  // null where all are lines, as they come
+    const Point2* joints = nullptr;             // pieces + 1; the last equals the first
+    const MonotonePiece* cut_pieces = nullptr;  // null if all pieces are the contour's own lines
     std::uint32_t first_run = 0;
     std::uint32_t runs = 0;
   };
@@ -61,7 +61,7 @@ class MonotoneContours {
     const bool closing = index == contour.outline->contour(contour.index).size();
     return {closing ? MonotonePiece::kClosing : index, 0.0, 1.0, {contour.joints + index, 2}};
   }
-  /// The whole segment that a piece is a part of.
+  /// The whole segment that contains a piece.
   Curve curve(const Contour& contour, const MonotonePiece& piece) const {
     if (piece.segment == MonotonePiece::kClosing) return {piece.controls, 0.0};
     return curve_of(*contour.outline, contour.outline->contour(contour.index)[piece.segment]);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Coordinates are rounded to a grid of 2^41 steps, on which Clipper2 is exact.
 #include "prefilter/shapes/outline/polygon_clipper.h"
 
 #include <clipper2/clipper.engine.h>
@@ -12,10 +13,10 @@
 namespace prefilter {
 namespace {
 
-// A grid of 2^41 steps across a box.
-class Grid {
+// ClipGrid with 2^41 steps across a box.
+class ClipGrid {
  public:
-  Grid(const std::vector<Polygon>& first, const std::vector<Polygon>& second) {
+  ClipGrid(const std::vector<Polygon>& first, const std::vector<Polygon>& second) {
     Box2 box;
     for (const auto* polygons : {&first, &second}) {
       for (const Polygon& polygon : *polygons) {
@@ -97,7 +98,7 @@ std::vector<Polygon> flattened(const Outline& outline, double tolerance) {
 Outline combine_polygons(const std::vector<Polygon>& first, FillRule first_rule,
                          const std::vector<Polygon>& second, FillRule second_rule,
                          OutlineOperation operation) {
-  const Grid grid(first, second);
+  const ClipGrid grid(first, second);
   Clipper2Lib::Paths64 subject = grid.to_grid(first);
   Clipper2Lib::Paths64 clip = grid.to_grid(second);
   if (first_rule != second_rule && !clip.empty()) {

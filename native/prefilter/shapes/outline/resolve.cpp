@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Convex contours take a fast path. Others are cut into chains, and a chain is on the boundary
+// where only one of its sides is filled. Ambiguous intersections fall back to polygons clipped on
+// an integer grid.
 #include "prefilter/shapes/resolve.h"
 
 #include <algorithm>
@@ -10,12 +13,12 @@
 #include "prefilter/shapes/outline/convex_contours.h"
 #include "prefilter/shapes/outline/fill_rule.h"
 #include "prefilter/shapes/outline/polygon_clipper.h"
-#include "prefilter/shapes/outline/resolve_soon.h"
+#include "prefilter/shapes/outline/resolve_within_budget.h"
 
 namespace prefilter {
 namespace {
 
-enum class Outcome : std::uint8_t { kAsItIs, kTraced, kUnclear, kTooMany };
+enum class Outcome : std::uint8_t { kUnchanged, kTraced, kUnclear, kTooMany };
 
 Outcome resolve_exactly(const Outline& outline, FillRule rule, double precision,
                         ArrangementEffort effort, const Progress& progress, Outline* result) {
@@ -37,16 +40,17 @@ Outcome resolve_exactly(const Outline& outline, FillRule rule, double precision,
     all_forward = all_forward && is_left && !is_right;
     if (is_left != is_right) boundary.push_back({chain, is_right});
   };
-  constexpr std::size_t kAtOnce = 256;
-  // Winding numbers are told that much sooner than whether two lines meet.
+  constexpr std::size_t kChainsPerReport = 256;
+  // One step of the effort is intersecting two lines; comparing winding numbers is this much
+  // cheaper.
   constexpr std::size_t kWindingsPerStep = 128;
   const std::size_t count = arrangement.chain_count();
-  for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
+  for (std::size_t begin = 0; begin < count; begin += kChainsPerReport) {
     progress.report(0.5 + 0.5 * static_cast<double>(begin) / static_cast<double>(count));
-    arrangement.visit(begin, std::min(begin + kAtOnce, count), visitor);
-    if (steps / kWindingsPerStep > arrangement.most_steps(effort)) return Outcome::kTooMany;
+    arrangement.visit(begin, std::min(begin + kChainsPerReport, count), visitor);
+    if (steps / kWindingsPerStep > arrangement.max_steps(effort)) return Outcome::kTooMany;
   }
-  if (arrangement.all_whole() && all_forward) return Outcome::kAsItIs;
+  if (arrangement.has_no_cuts() && all_forward) return Outcome::kUnchanged;
   return arrangement.trace(boundary, result) ? Outcome::kTraced : Outcome::kUnclear;
 }
 
@@ -64,7 +68,7 @@ Outline contours_of(const Outline& outline, std::span<const ContourUse> uses) {
 
 namespace {
 
-// Of convex contours that are beside each other, or one in another.
+// Resolves convex contours that are disjoint or nested.
 bool resolve_convex(const Outline& outline, FillRule rule, std::optional<Outline>* changed) {
   const auto uses = convex_contour_uses(outline, rule);
   if (!uses) return false;
@@ -76,10 +80,10 @@ bool resolve_convex(const Outline& outline, FillRule rule, std::optional<Outline
 
 bool resolve_by_arrangement(const Outline& outline, FillRule rule, ArrangementEffort effort,
                             const Progress& progress, std::optional<Outline>* changed) {
-  for (const double precision : kPrecisions) {
+  for (const double precision : kArrangementPrecisions) {
     Outline result;
     switch (resolve_exactly(outline, rule, precision, effort, progress, &result)) {
-      case Outcome::kAsItIs:
+      case Outcome::kUnchanged:
         return true;
       case Outcome::kTraced:
         *changed = std::move(result);
@@ -95,8 +99,8 @@ bool resolve_by_arrangement(const Outline& outline, FillRule rule, ArrangementEf
 
 }  // namespace
 
-bool resolve_soon(const Outline& outline, FillRule rule, const Progress& progress,
-                  std::optional<Outline>* changed) {
+bool resolve_within_budget(const Outline& outline, FillRule rule, const Progress& progress,
+                           std::optional<Outline>* changed) {
   changed->reset();
   return resolve_convex(outline, rule, changed) ||
          resolve_by_arrangement(outline, rule, ArrangementEffort::kBounded, progress, changed);
@@ -106,7 +110,7 @@ std::optional<Outline> resolved(const Outline& outline, FillRule rule, double to
                                 const Progress& progress) {
   std::optional<Outline> changed;
   if (resolve_convex(outline, rule, &changed) ||
-      resolve_by_arrangement(outline, rule, ArrangementEffort::kAny, progress, &changed)) {
+      resolve_by_arrangement(outline, rule, ArrangementEffort::kUnbounded, progress, &changed)) {
     return changed;
   }
   return combine_polygons(flattened(outline, tolerance), rule, {}, rule, OutlineOperation::kUnion);

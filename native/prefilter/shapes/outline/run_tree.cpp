@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// A bounding volume hierarchy over contours sorted along a Morton curve. Winding numbers are
+// counted by casting a ray and finding the crossed piece of each monotone run by binary search.
 #include "prefilter/shapes/outline/run_tree.h"
 
 #include <algorithm>
@@ -28,7 +30,7 @@ Box2 unite(const Box2& a, const Box2& b) {
           {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y)}};
 }
 
-// Spreads 16 bits to the even places of 32.
+// Spreads 16 bits to the even bits of 32, for a Morton code.
 std::uint32_t spread(std::uint32_t bits) {
   bits = (bits | bits << 8) & 0x00ff00ffu;
   bits = (bits | bits << 4) & 0x0f0f0f0fu;
@@ -36,7 +38,7 @@ std::uint32_t spread(std::uint32_t bits) {
   return (bits | bits << 1) & 0x55555555u;
 }
 
-// Part of a run: joints [first, last].
+// Part of a run between joints `first` and `last`.
 struct Span {
   const MonotoneRun* run;
   std::uint32_t first;
@@ -51,9 +53,9 @@ struct Span {
   }
 };
 
-// Whether pieces whose boxes share no more than part of a side in one axis are apart, but for being
-// joined one behind the other: at that side is no more than one end of each.
-bool touch_in_vain(const Span& a, const Span& b, double precision, double Point2::*axis) {
+// Whether two pieces whose boxes share at most part of one side cannot intersect away from their
+// joint: each has at most one end on that side.
+bool cannot_intersect(const Span& a, const Span& b, double precision, double Point2::*axis) {
   const Point2& a_begin = a.run->joints[a.first];
   const Point2& a_end = a.run->joints[a.last];
   const Point2& b_begin = b.run->joints[b.first];
@@ -76,7 +78,8 @@ bool touch_in_vain(const Span& a, const Span& b, double precision, double Point2
 void append_span_pairs(const Span& a, const Span& b, double precision, Pairs* pairs) {
   if (!meet(a.box(), b.box(), precision)) return;
   if (a.is_piece() && b.is_piece()) {
-    if (touch_in_vain(a, b, precision, &Point2::x) || touch_in_vain(a, b, precision, &Point2::y))
+    if (cannot_intersect(a, b, precision, &Point2::x) ||
+        cannot_intersect(a, b, precision, &Point2::y))
       return;
     pairs->emplace_back(a.id(), b.id());
   } else if (a.last - a.first >= b.last - b.first) {
@@ -94,7 +97,7 @@ void append_run_pairs(const MonotoneRun& a, const MonotoneRun& b, double precisi
   append_span_pairs({&a, 0, a.pieces}, {&b, 0, b.pieces}, precision, pairs);
 }
 
-// Of a leaf's runs, each of which is looked at with several.
+// Boxes of a leaf's runs, as each is tested against several others.
 std::array<Box2, kLeafRuns> boxes_of(std::span<const MonotoneRun> runs) {
   std::array<Box2, kLeafRuns> boxes;
   std::transform(runs.begin(), runs.end(), boxes.begin(),
@@ -111,8 +114,8 @@ double across(const Point2& point) {
   return axis == RayAxis::kX ? point.y : point.x;
 }
 
-// 1 for a point to the left of a hull, seen along its chord, -1 to its right, and 0 where the hull
-// is wider than that.
+// 1 for a point to the left of a control hull, seen along its chord, -1 to its right, and 0 if the
+// hull is too wide to tell.
 int side_of_hull(std::span<const Point2> controls, const Point2& point) {
   const Point2& begin = controls.front();
   const Point2 chord = controls.back() - begin;
@@ -124,14 +127,14 @@ int side_of_hull(std::span<const Point2> controls, const Point2& point) {
     low = std::min(low, other);
     high = std::max(high, other);
   }
-  // More than the products are rounded by.
+  // Exceeds the rounding error of the products.
   const double margin = 1e-14 * (std::fabs(chord.x) + std::fabs(chord.y)) *
                         (std::fabs(point.x - begin.x) + std::fabs(point.y - begin.y));
   if (offset > high + margin) return 1;
   return offset < low - margin ? -1 : 0;
 }
 
-// Where a monotone piece is at `level` across the axis.
+// Coordinate along the axis at which a monotone piece reaches `level` across it.
 template <RayAxis axis>
 double along_at(const Curve& curve, double from, double to, const Point2& begin, const Point2& end,
                 double level) {
@@ -140,7 +143,7 @@ double along_at(const Curve& curve, double from, double to, const Point2& begin,
     const double t = (level - across<axis>(begin)) / rise;
     return (1.0 - t) * along<axis>(begin) + t * along<axis>(end);
   }
-  // Regula falsi in the Illinois way; bisection where that is slow.
+  // Regula falsi (Illinois variant), with a bisection every third step.
   double low = across<axis>(begin) - level;
   double high = across<axis>(end) - level;
   Point2 point = begin;
@@ -170,12 +173,12 @@ RunTree::RunTree(const MonotoneContours& contours, double precision)
   if (runs.empty()) return;
   const Box2& whole = contours.box();
   const Point2 size = whole.high - whole.low;
-  const double kLast = 65535.0;
-  const double scale_x = size.x > 0.0 ? kLast / size.x : 0.0;
-  const double scale_y = size.y > 0.0 ? kLast / size.y : 0.0;
-  // Differences of points that are far away from each other may not be finite.
-  const auto step_at = [kLast](double place) {
-    return place > 0.0 ? static_cast<std::uint32_t>(std::min(place, kLast)) : 0U;
+  const double kMaxMortonStep = 65535.0;
+  const double scale_x = size.x > 0.0 ? kMaxMortonStep / size.x : 0.0;
+  const double scale_y = size.y > 0.0 ? kMaxMortonStep / size.y : 0.0;
+  // Differences of distant points can overflow.
+  const auto step_at = [kMaxMortonStep](double place) {
+    return place > 0.0 ? static_cast<std::uint32_t>(std::min(place, kMaxMortonStep)) : 0U;
   };
   std::vector<std::uint64_t> keys;
   keys.reserve(contours.contours().size());
@@ -238,60 +241,60 @@ std::uint32_t RunTree::build_runs(std::uint32_t first, std::uint32_t count, bool
   return index;
 }
 
-// Where that many are found or looked at, no more are.
-struct RunTree::FoundPairs {
+// Search for pairs that stops after `most` pairs or `most` tests.
+struct RunTree::PairSearch {
   Pairs* pairs = nullptr;
   std::size_t most = 0;
-  std::size_t looked_at = 0;
+  std::size_t tests = 0;
 
-  bool look() { return ++looked_at <= most && pairs->size() <= most; }
+  bool may_test() { return ++tests <= most && pairs->size() <= most; }
 };
 
 bool RunTree::append_pairs(std::size_t most, Pairs* pairs) const {
-  FoundPairs found = {pairs, most};
-  if (!nodes_.empty()) pairs_within(0, &found);
-  return found.looked_at <= most && pairs->size() <= most;
+  PairSearch search = {pairs, most};
+  if (!nodes_.empty()) pairs_within(0, &search);
+  return search.tests <= most && pairs->size() <= most;
 }
 
-void RunTree::pairs_within(std::uint32_t index, FoundPairs* found) const {
+void RunTree::pairs_within(std::uint32_t index, PairSearch* search) const {
   const Node& node = nodes_[index];
   if (node.second_child != 0) {
-    pairs_within(index + 1, found);
-    pairs_within(node.second_child, found);
-    pairs_between(index + 1, node.second_child, found);
+    pairs_within(index + 1, search);
+    pairs_within(node.second_child, search);
+    pairs_between(index + 1, node.second_child, search);
     return;
   }
   const auto runs = contours_.runs().subspan(node.first, node.count);
   const auto boxes = boxes_of(runs);
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    for (std::size_t j = i + 1; j < runs.size() && found->look(); ++j) {
+    for (std::size_t j = i + 1; j < runs.size() && search->may_test(); ++j) {
       if (!meet(boxes[i], boxes[j], precision_)) continue;
-      append_run_pairs(runs[i], runs[j], precision_, found->pairs);
+      append_run_pairs(runs[i], runs[j], precision_, search->pairs);
     }
   }
 }
 
-void RunTree::pairs_between(std::uint32_t a, std::uint32_t b, FoundPairs* found) const {
+void RunTree::pairs_between(std::uint32_t a, std::uint32_t b, PairSearch* search) const {
   const Node& first = nodes_[a];
   const Node& second = nodes_[b];
-  if (!meet(first.box, second.box, precision_) || !found->look()) return;
+  if (!meet(first.box, second.box, precision_) || !search->may_test()) return;
   if (first.second_child == 0 && second.second_child == 0) {
     const auto runs = contours_.runs().subspan(first.first, first.count);
     const auto others = contours_.runs().subspan(second.first, second.count);
     const auto boxes = boxes_of(runs);
     const auto other_boxes = boxes_of(others);
     for (std::size_t i = 0; i < runs.size(); ++i) {
-      for (std::size_t j = 0; j < others.size() && found->look(); ++j) {
+      for (std::size_t j = 0; j < others.size() && search->may_test(); ++j) {
         if (!meet(boxes[i], other_boxes[j], precision_)) continue;
-        append_run_pairs(runs[i], others[j], precision_, found->pairs);
+        append_run_pairs(runs[i], others[j], precision_, search->pairs);
       }
     }
   } else if (second.second_child == 0 || (first.second_child != 0 && first.count >= second.count)) {
-    pairs_between(a + 1, b, found);
-    pairs_between(first.second_child, b, found);
+    pairs_between(a + 1, b, search);
+    pairs_between(first.second_child, b, search);
   } else {
-    pairs_between(a, b + 1, found);
-    pairs_between(a, second.second_child, found);
+    pairs_between(a, b + 1, search);
+    pairs_between(a, second.second_child, search);
   }
 }
 
@@ -319,7 +322,8 @@ void RunTree::add_on_ray(const Point2& point, std::span<const PieceId> excluded,
         along<axis>(point) > along<axis>(node.box.high)) {
       continue;
     }
-    // Contours wind around nothing beside them. (A point on one may have been rounded off it.)
+    // A contour does not wind around points beside it. (A point on a contour may be rounded off
+    // it.)
     if (node.has_whole_contours && along<axis>(point) + precision_ < along<axis>(node.box.low))
       continue;
     if (node.second_child != 0) {
@@ -335,7 +339,7 @@ void RunTree::add_on_ray(const Point2& point, std::span<const PieceId> excluded,
   }
 }
 
-// A piece counts from its lower end, and up to but without its upper one.
+// A piece includes its lower end and excludes its upper end, so that joints count once.
 template <RayAxis axis>
 int RunTree::run_winding(const MonotoneRun& run, const Point2& point,
                          std::span<const PieceId> excluded) const {
@@ -345,16 +349,16 @@ int RunTree::run_winding(const MonotoneRun& run, const Point2& point,
   const Point2& upper = rises ? run.end() : run.begin();
   if (level < across<axis>(lower) || level >= across<axis>(upper)) return 0;
   if (along<axis>(point) > std::max(along<axis>(run.begin()), along<axis>(run.end()))) return 0;
-  // Seen along +y, what goes to -x turns around the point counter-clockwise.
+  // A piece that crosses a ray along +y toward -x turns counter-clockwise around its origin.
   const int sign = (rises ? 1 : -1) * (axis == RayAxis::kX ? 1 : -1);
 
   const Point2* joints = run.joints;
-  const Point2* found =
+  const Point2* joint_after =
       rises ? std::partition_point(joints, joints + run.pieces + 1,
                                    [&](const Point2& p) { return across<axis>(p) <= level; })
             : std::partition_point(joints, joints + run.pieces + 1,
                                    [&](const Point2& p) { return across<axis>(p) > level; });
-  const auto index = static_cast<std::uint32_t>(found - joints) - 1;
+  const auto index = static_cast<std::uint32_t>(joint_after - joints) - 1;
   const Point2& begin = joints[index];
   const Point2& end = joints[index + 1];
   const PieceId id = {run.contour, run.first_piece + index};
@@ -365,7 +369,7 @@ int RunTree::run_winding(const MonotoneRun& run, const Point2& point,
   const MonotonePiece piece = contours_.piece(contour, id.piece);
   const int side = side_of_hull(piece.controls, point);
   if (side != 0) {
-    // Beyond it, seen along the ray, is to its left where it rises in y, or falls in x.
+    // The ray crosses the piece if the point is to its left while it rises in y, or falls in x.
     return (side > 0) == (rises == (axis == RayAxis::kX)) ? sign : 0;
   }
   const Curve curve = contours_.curve(contour, piece);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A tree of boxes over monotone runs: which of their pieces may meet, and which lie beside a point.
+// Tree of bounding boxes over monotone runs. Finds pairs of pieces that may intersect, and the
+// pieces hit by a ray.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 
 namespace prefilter {
 
-/// A piece, by the numbers of its contour and of itself in that.
+/// A piece by the index of its contour and its index in that contour.
 struct PieceId {
   std::uint32_t contour = 0;
   std::uint32_t piece = 0;
@@ -19,13 +20,13 @@ struct PieceId {
   friend auto operator<=>(const PieceId&, const PieceId&) = default;
 };
 
-/// Winding numbers of a point, one for each layer. Most of them are 0.
+/// Winding numbers around one point, one per layer. Most of them are 0.
 class LayerWindings {
  public:
   explicit LayerWindings(std::size_t layers) : values_(layers, 0) {}
 
   int operator[](std::size_t layer) const { return values_[layer]; }
-  /// Layers that something was added to, and maybe more than once.
+  /// Layers passed to `add`; a layer may occur more than once.
   std::span<const std::uint32_t> touched() const { return touched_; }
   void add(std::uint32_t layer, int winding) {
     if (winding == 0) return;
@@ -42,22 +43,20 @@ class LayerWindings {
   std::vector<std::uint32_t> touched_;
 };
 
-/// The direction of a ray.
+/// Direction of a ray.
 enum class RayAxis : std::uint8_t { kX, kY };
 
 class RunTree {
  public:
-  /// The contours must outlive it. What is no farther apart than `precision` meets.
+  /// The contours must outlive the tree. Boxes closer than `precision` count as overlapping.
   RunTree(const MonotoneContours& contours, double precision);
 
-  /// Appends pairs of pieces whose boxes meet, each pair once. Neighbors along a run cannot meet
-  /// elsewhere than at their joint, and are left out. Returns false where there are more than
-  /// `most`.
+  /// Appends each pair of pieces whose boxes overlap once. Neighbors along a run, which meet only
+  /// at their joint, are left out. Returns false if there are more than `most` pairs.
   bool append_pairs(std::size_t most, std::vector<std::pair<PieceId, PieceId>>* pairs) const;
 
-  /// Adds to `windings` what the pieces on the ray from a point upward in x,
-  /// or in y, contribute to the winding numbers at that point. `excluded` are left out: those that
-  /// the point lies on.
+  /// Adds the winding numbers around a point, counted along a ray from it toward +x or +y. Pieces
+  /// through the point must be listed in `excluded`.
   void add_windings(const Point2& point, RayAxis axis, std::span<const PieceId> excluded,
                     LayerWindings* windings) const;
 
@@ -72,9 +71,9 @@ class RunTree {
 
   std::uint32_t build_contours(std::span<const std::uint32_t> order);
   std::uint32_t build_runs(std::uint32_t first, std::uint32_t count, bool is_whole);
-  struct FoundPairs;
-  void pairs_within(std::uint32_t node, FoundPairs* found) const;
-  void pairs_between(std::uint32_t a, std::uint32_t b, FoundPairs* found) const;
+  struct PairSearch;
+  void pairs_within(std::uint32_t node, PairSearch* search) const;
+  void pairs_between(std::uint32_t a, std::uint32_t b, PairSearch* search) const;
   template <RayAxis axis>
   void add_on_ray(const Point2& point, std::span<const PieceId> excluded,
                   LayerWindings* windings) const;

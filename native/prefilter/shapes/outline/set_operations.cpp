@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Set operations by an arrangement of both outlines, with a fallback to clipped polygons.
 #include "prefilter/shapes/set_operations.h"
 
 #include <array>
@@ -14,7 +15,7 @@
 namespace prefilter {
 namespace {
 
-bool holds(OutlineOperation operation, bool in_first, bool in_second) {
+bool is_in_result(OutlineOperation operation, bool in_first, bool in_second) {
   switch (operation) {
     case OutlineOperation::kUnion:
       return in_first || in_second;
@@ -26,12 +27,12 @@ bool holds(OutlineOperation operation, bool in_first, bool in_second) {
   return in_first && !in_second;
 }
 
-// Products of differences of what is farther away are not finite.
-constexpr double kFarthest = 1e100;
+// Products of differences of larger coordinates may overflow.
+constexpr double kMaxCoordinate = 1e100;
 
 void check_points(const Outline& outline) {
   for (const Point2& point : outline.points()) {
-    if (!(std::abs(point.x) <= kFarthest && std::abs(point.y) <= kFarthest)) {
+    if (!(std::abs(point.x) <= kMaxCoordinate && std::abs(point.y) <= kMaxCoordinate)) {
       throw_invalid("shapes: a point is not finite, or farther than 1e100 away");
     }
   }
@@ -45,12 +46,12 @@ Outline combine(const Outline& first, FillRule first_rule, const Outline& second
   check_points(second);
   const std::array<const Outline*, 2> outlines = {&first, &second};
   const auto is_inside = [&](const LayerWindings& windings) {
-    return holds(operation, is_filled(windings[0], first_rule),
-                 is_filled(windings[1], second_rule));
+    return is_in_result(operation, is_filled(windings[0], first_rule),
+                        is_filled(windings[1], second_rule));
   };
-  for (const double precision : kPrecisions) {
+  for (const double precision : kArrangementPrecisions) {
     Arrangement arrangement(outlines, precision);
-    if (arrangement.cut(ArrangementEffort::kAny) != CutOutcome::kCut) continue;
+    if (arrangement.cut(ArrangementEffort::kUnbounded) != CutOutcome::kCut) continue;
     std::vector<BoundaryChain> boundary;
     arrangement.visit(
         0, arrangement.chain_count(),

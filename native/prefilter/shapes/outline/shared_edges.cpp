@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The winding numbers of all outlines together are how many of them a point is in. A segment and
-// the same one the other way round add nothing to them, so that what is left has the same winding
-// numbers: where it winds once, no point is in two.
+// The sum of all winding numbers at a point is the number of outlines that contain it. A segment
+// and its reverse cancel in this sum, so the remaining segments have the same winding numbers.
+// Where these never exceed 1, no point is inside two outlines.
 #include "prefilter/shapes/outline/shared_edges.h"
 
 #include <algorithm>
@@ -13,12 +13,12 @@
 #include <optional>
 #include <vector>
 
-#include "prefilter/shapes/outline/resolve_soon.h"
+#include "prefilter/shapes/outline/resolve_within_budget.h"
 
 namespace prefilter {
 namespace {
 
-// One outline's segment, told apart by its control points.
+// A segment with its control points.
 struct Edge {
   const Point2* points = nullptr;
   const Outline::Segment* segment = nullptr;
@@ -38,21 +38,21 @@ struct Edge {
 
 constexpr Outline::Segment kLine;
 
-std::uint64_t mixed(std::uint64_t hash) {
+std::uint64_t mix_bits(std::uint64_t hash) {
   hash ^= hash >> 32;
   hash *= 0x9e3779b97f4a7c15U;
   return hash ^ hash >> 29;
 }
 
 std::uint64_t hash_of(const Point2& point) {
-  // Zeros of both signs are the same point.
-  return mixed(std::bit_cast<std::uint64_t>(point.x + 0.0) +
-               mixed(std::bit_cast<std::uint64_t>(point.y + 0.0)));
+  // Adding 0.0 makes -0.0 equal to 0.0.
+  return mix_bits(std::bit_cast<std::uint64_t>(point.x + 0.0) +
+                  mix_bits(std::bit_cast<std::uint64_t>(point.y + 0.0)));
 }
 
-class Edges {
+class EdgeSet {
  public:
-  // At once, as in steps twice the memory would be written.
+  // One allocation; growing in steps would write twice the memory.
   void reserve(std::size_t count) { edges_.reserve(count); }
   void add(const Outline& outline) {
     for (std::size_t c = 0; c < outline.contour_count(); ++c) {
@@ -70,13 +70,13 @@ class Edges {
 
   std::size_t size() const { return edges_.size(); }
 
-  // Removes edges and their reverses.
+  // Removes pairs of an edge and its reverse.
   void cancel() {
     const std::size_t size = std::bit_ceil(2 * edges_.size() + 1);
     std::vector<std::uint32_t> table(size, kFree);
     std::vector<std::uint8_t> is_cancelled(edges_.size(), 0);
-    // Where two outlines share an edge they mostly share the next, which the other one has before
-    // it: then no table has to be looked into, from one end of memory to the other.
+    // Two outlines that share an edge mostly share the next one, too, which precedes it in the
+    // other outline. Trying it first avoids a random access to the hash table.
     std::uint32_t expected = kFree;
     const auto cancels = [&](std::uint32_t i, std::uint32_t other) {
       if (is_cancelled[other] != 0 || !edges_[i].is_reverse_of(edges_[other])) return false;
@@ -88,10 +88,10 @@ class Edges {
       if (expected != kFree && cancels(i, expected)) continue;
       expected = kFree;
       const Edge& edge = edges_[i];
-      // The same for both directions.
-      std::size_t place = mixed(hash_of(edge.begin()) + hash_of(edge.end())) & (size - 1);
+      // The hash is symmetric in both ends.
+      std::size_t place = mix_bits(hash_of(edge.begin()) + hash_of(edge.end())) & (size - 1);
       int probes = 0;
-      for (; table[place] != kFree && probes < kMostProbes; place = (place + 1) & (size - 1)) {
+      for (; table[place] != kFree && probes < kMaxProbes; place = (place + 1) & (size - 1)) {
         ++probes;
         if (cancels(i, table[place])) break;
       }
@@ -104,8 +104,8 @@ class Edges {
     edges_.resize(kept);
   }
 
-  // The edges as closed contours; nothing where they are none.
-  std::optional<Outline> chained() {
+  // Joins the edges to closed contours; nothing if they do not close.
+  std::optional<Outline> joined_contours() {
     std::stable_sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) {
       return a.begin().x != b.begin().x ? a.begin().x < b.begin().x : a.begin().y < b.begin().y;
     });
@@ -129,8 +129,8 @@ class Edges {
 
  private:
   static constexpr std::uint32_t kFree = UINT32_MAX;
-  // Many equal edges are no map's: they stay.
-  static constexpr int kMostProbes = 64;
+  // Tilings have few equal edges; more than these are not canceled.
+  static constexpr int kMaxProbes = 64;
 
   static void append(const Edge& edge, Outline* outline) {
     if (edge.weight() > 0.0) {
@@ -141,14 +141,14 @@ class Edges {
   }
 
   std::size_t unused_from(const Point2& point, const std::vector<std::uint8_t>& is_used) const {
-    const auto found =
+    const auto first_edge =
         std::lower_bound(edges_.begin(), edges_.end(), point, [](const Edge& a, const Point2& b) {
           return a.begin().x != b.x ? a.begin().x < b.x : a.begin().y < b.y;
         });
-    auto i = static_cast<std::size_t>(found - edges_.begin());
-    // More than a few from one point are no map's.
-    constexpr std::size_t kMost = 32;
-    const std::size_t end = std::min(edges_.size(), i + kMost);
+    auto i = static_cast<std::size_t>(first_edge - edges_.begin());
+    // Tilings have few edges at one point.
+    constexpr std::size_t kMaxEdgesPerPoint = 32;
+    const std::size_t end = std::min(edges_.size(), i + kMaxEdgesPerPoint);
     while (i < end && edges_[i].begin() == point && is_used[i] != 0) ++i;
     return i < end && edges_[i].begin() == point ? i : edges_.size();
   }
@@ -159,8 +159,8 @@ class Edges {
 
 }  // namespace
 
-bool are_side_by_side(std::span<const Outline* const> outlines) {
-  Edges edges;
+bool have_disjoint_interiors(std::span<const Outline* const> outlines) {
+  EdgeSet edges;
   std::size_t most = 0;
   for (const Outline* outline : outlines) {
     most += outline->segments().size() + outline->contour_count();
@@ -170,9 +170,9 @@ bool are_side_by_side(std::span<const Outline* const> outlines) {
   const std::size_t all = edges.size();
   edges.cancel();
   if (all == 0 || 4 * (all - edges.size()) < all) return false;
-  const std::optional<Outline> left = edges.chained();
+  const std::optional<Outline> left = edges.joined_contours();
   std::optional<Outline> changed;
-  return left && resolve_soon(*left, FillRule::kNonzero, {}, &changed) && !changed;
+  return left && resolve_within_budget(*left, FillRule::kNonzero, {}, &changed) && !changed;
 }
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Outlines side by side, as on a map: edges that two of them share cancel.
+// Shapes that tile the plane like a map: edges that two of them share cancel.
 #pragma once
 
 #include <span>
@@ -9,10 +9,9 @@
 
 namespace prefilter {
 
-/// Whether outlines, of which each winds once around what it fills, are beside each other: no point
-/// is in two of them. Is told where at least a quarter of their segments are shared, each the other
-/// way round in its neighbor; else, and where that takes more steps than some for every curve, it
-/// is false.
-bool are_side_by_side(std::span<const Outline* const> outlines);
+/// Whether no point is inside two of the outlines, each of which must wind once around its filled
+/// part. Tested only if at least a quarter of the segments are shared by two outlines, in opposite
+/// directions; false otherwise, and if the test exceeds a constant number of steps per curve.
+bool have_disjoint_interiors(std::span<const Outline* const> outlines);
 
 }  // namespace prefilter

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A stroke is put together from quadrilaterals along the curve, wedges at the outside of corners
-// and caps, all counter-clockwise: the sum of their boundaries runs along both sides, and through
-// the corner itself on its inside. Winding numbers are nowhere negative, so the non-zero rule
-// unites the pieces.
+// A stroke is the union of quadrilaterals along the curve, wedges at the outside of corners, and
+// caps, all counter-clockwise. The sum of their boundaries runs along both sides, and through the
+// corner itself on its inside. Winding numbers are never negative, so the non-zero rule yields the
+// union.
 #include "prefilter/shapes/stroke.h"
 
 #include <algorithm>
@@ -16,16 +16,16 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/text.h"
 #include "prefilter/shapes/outline/dashes.h"
-#include "prefilter/shapes/outline/resolve_soon.h"
+#include "prefilter/shapes/outline/resolve_within_budget.h"
 #include "prefilter/shapes/outline/stroke_pieces.h"
 #include "prefilter/shapes/outline/stroke_sides.h"
 
 namespace prefilter {
 namespace {
 
-constexpr int kMostDashes = 1000000;
-// The exponent of coordinates whose products, three and more, are finite still.
-constexpr int kMostExponent = 300;
+constexpr int kMaxDashes = 1000000;
+// Products of three coordinates below 2^300 do not overflow.
+constexpr int kMaxExponent = 300;
 
 void check(const StrokeOptions& options) {
   const auto check_length = [](double value, const char* name) {
@@ -56,7 +56,7 @@ StrokePath path_of(const Outline& outline, std::size_t contour) {
   return path;
 }
 
-// Appends the segments of a side, and begins a contour with it if it `begins`.
+// Appends the segments of a side, as a new contour if `begins`.
 void append_side(const Outline& side, bool reversed, bool begins, Outline* outline) {
   const auto segments = side.segments();
   if (begins) outline->move_to(reversed ? side.points().back() : side.points().front());
@@ -67,9 +67,9 @@ void append_side(const Outline& side, bool reversed, bool begins, Outline* outli
   }
 }
 
-// What a pen covers along pieces.
-void append_covered(std::span<const StrokePiece> pieces, bool is_closed,
-                    const StrokeOptions& options, double tolerance, Outline* outline) {
+// Appends the stroke along pieces.
+void append_stroke(std::span<const StrokePiece> pieces, bool is_closed,
+                   const StrokeOptions& options, double tolerance, Outline* outline) {
   const double half_width = 0.5 * options.width;
   const auto side = [&](double offset) {
     return stroke_side(pieces, is_closed, offset, options.join, options.miter_limit, tolerance);
@@ -88,7 +88,7 @@ void append_covered(std::span<const StrokePiece> pieces, bool is_closed,
   outline->close();
 }
 
-// What it covers of a path of no length.
+// Appends the caps of a path without length.
 void append_dot(const StrokePath& path, const StrokeOptions& options, Outline* outline) {
   if (options.cap == StrokeCap::kButt) return;
   const double half_width = 0.5 * options.width;
@@ -99,7 +99,7 @@ void append_dot(const StrokePath& path, const StrokeOptions& options, Outline* o
   outline->close();
 }
 
-// What a pen goes along: a path, or its dashes.
+// The dashes of a path, or the path itself if it is solid.
 std::vector<StrokePath> dashes_of(StrokePath path, std::span<const double> pattern, double period,
                                   double offset) {
   std::vector<StrokePath> paths;
@@ -107,10 +107,10 @@ std::vector<StrokePath> dashes_of(StrokePath path, std::span<const double> patte
     paths.push_back(std::move(path));
     return paths;
   }
-  double way = 0.0;
-  for (const PartOfCurve& part : path.curves) way += arc_length(part.curve(), 0.0, 1.0);
-  if (way / period * static_cast<double>(pattern.size() / 2) > kMostDashes) {
-    throw_invalid("dashes: more than " + std::to_string(kMostDashes) + " on one contour");
+  double path_length = 0.0;
+  for (const PartOfCurve& part : path.curves) path_length += arc_length(part.curve(), 0.0, 1.0);
+  if (path_length / period * static_cast<double>(pattern.size() / 2) > kMaxDashes) {
+    throw_invalid("dashes: more than " + std::to_string(kMaxDashes) + " on one contour");
   }
   append_dashes(path, pattern, offset, &paths);
   return paths;
@@ -120,23 +120,23 @@ std::vector<StrokePath> dashes_of(StrokePath path, std::span<const double> patte
 
 namespace {
 
-// The largest coordinate or width; 0 where that is not finite.
-double farthest(const Outline& outline, const StrokeOptions& options) {
+// The largest coordinate or width; 0 if that is not finite.
+double largest_magnitude(const Outline& outline, const StrokeOptions& options) {
   const Box2 box = control_box(outline);
-  const double found = std::max({std::fabs(box.low.x), std::fabs(box.low.y), std::fabs(box.high.x),
-                                 std::fabs(box.high.y), options.width});
-  return std::isfinite(found) ? found : 0.0;
+  const double magnitude = std::max({std::fabs(box.low.x), std::fabs(box.low.y),
+                                     std::fabs(box.high.x), std::fabs(box.high.y), options.width});
+  return std::isfinite(magnitude) ? magnitude : 0.0;
 }
 
-// Far from the origin no piece of a curve comes nearer to it than coordinates are rounded.
-double reachable(double tolerance, const Outline& outline, const StrokeOptions& options) {
-  return std::max(tolerance, kLeastStrokeTolerance * farthest(outline, options));
+// Curves cannot be approximated more closely than their coordinates are rounded.
+double reachable_tolerance(double tolerance, const Outline& outline, const StrokeOptions& options) {
+  return std::max(tolerance, kMinRelativeStrokeTolerance * largest_magnitude(outline, options));
 }
 
-// The power of 2 that makes all coordinates small enough; else 1.
-double shrinking(const Outline& outline, const StrokeOptions& options) {
-  const double largest = farthest(outline, options);
-  return largest > 0.0 ? std::ldexp(1.0, std::min(0, kMostExponent - std::ilogb(largest))) : 1.0;
+// A power of 2 that makes all coordinates small enough; 1 if they are.
+double shrink_factor(const Outline& outline, const StrokeOptions& options) {
+  const double largest = largest_magnitude(outline, options);
+  return largest > 0.0 ? std::ldexp(1.0, std::min(0, kMaxExponent - std::ilogb(largest))) : 1.0;
 }
 
 Outline scaled(const Outline& outline, double scale) {
@@ -150,11 +150,11 @@ StrokeOptions scaled(StrokeOptions options, double scale) {
   return options;
 }
 
-// Its parts, of which winding numbers are nowhere negative.
-Outline covered_by_parts(const Outline& outline, const StrokeOptions& options, double tolerance) {
+// The stroke's overlapping parts, whose winding numbers are never negative.
+Outline overlapping_stroke(const Outline& outline, const StrokeOptions& options, double tolerance) {
   Outline covered;
   if (options.width == 0.0) return covered;
-  tolerance = reachable(tolerance, outline, options);
+  tolerance = reachable_tolerance(tolerance, outline, options);
   std::vector<double> pattern = options.dashes;
   if (pattern.size() % 2 != 0) pattern.insert(pattern.end(), pattern.begin(), pattern.end());
   const double period = std::accumulate(pattern.begin(), pattern.end(), 0.0);
@@ -168,7 +168,7 @@ Outline covered_by_parts(const Outline& outline, const StrokeOptions& options, d
       if (pieces.empty()) {
         append_dot(path, options, &covered);
       } else {
-        append_covered(pieces, path.is_closed, options, tolerance, &covered);
+        append_stroke(pieces, path.is_closed, options, tolerance, &covered);
       }
     }
   }
@@ -179,24 +179,25 @@ Outline covered_by_parts(const Outline& outline, const StrokeOptions& options, d
 
 Outline stroke(const Outline& outline, const StrokeOptions& options, double tolerance) {
   check(options);
-  if (const double scale = shrinking(outline, options); scale < 1.0) {
+  if (const double scale = shrink_factor(outline, options); scale < 1.0) {
     const Outline small = scaled(outline, scale);
     return scaled(stroke(small, scaled(options, scale), scale * tolerance), 1.0 / scale);
   }
-  return resolve(covered_by_parts(outline, options, tolerance), FillRule::kNonzero, tolerance);
+  return resolve(overlapping_stroke(outline, options, tolerance), FillRule::kNonzero, tolerance);
 }
 
-Outline stroke_soon(const Outline& outline, const StrokeOptions& options, double tolerance,
-                    bool* winds_once) {
+Outline stroke_within_budget(const Outline& outline, const StrokeOptions& options, double tolerance,
+                             bool* winds_once) {
   check(options);
-  if (const double scale = shrinking(outline, options); scale < 1.0) {
+  if (const double scale = shrink_factor(outline, options); scale < 1.0) {
     const StrokeOptions small = scaled(options, scale);
-    const Outline made = stroke_soon(scaled(outline, scale), small, scale * tolerance, winds_once);
-    return scaled(made, 1.0 / scale);
+    const Outline outline_part =
+        stroke_within_budget(scaled(outline, scale), small, scale * tolerance, winds_once);
+    return scaled(outline_part, 1.0 / scale);
   }
-  Outline covered = covered_by_parts(outline, options, tolerance);
+  Outline covered = overlapping_stroke(outline, options, tolerance);
   std::optional<Outline> united;
-  *winds_once = resolve_soon(covered, FillRule::kNonzero, {}, &united);
+  *winds_once = resolve_within_budget(covered, FillRule::kNonzero, {}, &united);
   return united ? std::move(*united) : covered;
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Offset curves are approximated by cubics that interpolate their ends and end derivatives. Curves
+// are halved until the error at three parameters is within the tolerance.
 #include "prefilter/shapes/outline/stroke_pieces.h"
 
 #include <algorithm>
@@ -11,12 +13,12 @@
 namespace prefilter {
 namespace {
 
-constexpr int kDeepest = 18;
+constexpr int kMaxHalvings = 18;
 
 Point2 unit(const Point2& p) { return (1.0 / length(p)) * p; }
 Point2 left_of(const Point2& direction) { return {-direction.y, direction.x}; }
 
-// A direction of a curve at an end: to the next control point that is elsewhere.
+// Directions at the ends of a curve: toward the nearest control point that differs from the end.
 Point2 begin_direction(std::span<const Point2> controls) {
   for (std::size_t i = 1; i < controls.size(); ++i) {
     if (!(controls[i] == controls[0])) return unit(controls[i] - controls[0]);
@@ -30,7 +32,7 @@ Point2 end_direction(std::span<const Point2> controls) {
   return {1.0, 0.0};
 }
 
-// How much a control polygon turns in all, in radians.
+// Total turning of a control polygon, in radians.
 double turning(std::span<const Point2> controls) {
   double sum = 0.0;
   Point2 last{};
@@ -44,8 +46,9 @@ double turning(std::span<const Point2> controls) {
   return sum;
 }
 
-// Whether a curve is so small, as far from the origin as it is, that rounding gives its directions.
-bool has_no_shape(std::span<const Point2> controls) {
+// Whether a curve is so small, relative to its distance from the origin, that rounding determines
+// its directions.
+bool is_below_rounding(std::span<const Point2> controls) {
   double farthest = 0.0;
   double extent = 0.0;
   for (const Point2& point : controls) {
@@ -53,7 +56,7 @@ bool has_no_shape(std::span<const Point2> controls) {
     farthest = std::max({farthest, std::fabs(point.x), std::fabs(point.y)});
     extent = std::max({extent, std::fabs(off.x), std::fabs(off.y)});
   }
-  return extent > 0.0 && extent <= kLeastStrokeTolerance * farthest;
+  return extent > 0.0 && extent <= kMinRelativeStrokeTolerance * farthest;
 }
 
 double distance_from_chord(std::span<const Point2> controls) {
@@ -73,15 +76,14 @@ Point2 cubic_point(const Point2& a, const std::array<Point2, 2>& controls, const
   return point_at({points, 0.0}, t);
 }
 
-// Cuts curves into pieces.
-class PieceMaker {
+class PieceBuilder {
  public:
-  PieceMaker(double half_width, double tolerance)
+  PieceBuilder(double half_width, double tolerance)
       : half_width_(half_width),
         tolerance_(0.5 * tolerance),
-        most_turning_(half_width > tolerance_
-                          ? std::min(0.5, 2.0 * elementary::acos(1.0 - tolerance_ / half_width))
-                          : 0.5) {}
+        max_turning_(half_width > tolerance_
+                         ? std::min(0.5, 2.0 * elementary::acos(1.0 - tolerance_ / half_width))
+                         : 0.5) {}
 
   std::vector<StrokePiece> pieces_of(const StrokePath& path) {
     for (const PartOfCurve& part : path.curves) {
@@ -90,7 +92,7 @@ class PieceMaker {
       if (curve.degree() == 1) {
         append_line(curve.begin(), curve.end());
       } else {
-        append_curve_pieces(curve, kDeepest);
+        append_curve_pieces(curve, kMaxHalvings);
       }
       for (std::size_t i = first + 1; i < pieces_.size(); ++i) {
         if (!pieces_[i].is_cusp) pieces_[i].is_smooth = true;
@@ -111,14 +113,14 @@ class PieceMaker {
   }
 
   void append_curve_pieces(const Curve& curve, int depth) {
-    if (has_no_shape(curve.controls)) {
+    if (is_below_rounding(curve.controls)) {
       append_cusp(curve);
       return;
     }
     const double turn = turning(curve.controls);
     if (turn < 0.45 * std::numbers::pi && append_sides(curve)) return;
     const bool is_flat = distance_from_chord(curve.controls) <= tolerance_;
-    if (is_flat && turn <= most_turning_) {
+    if (is_flat && turn <= max_turning_) {
       append_flat(curve);
       return;
     }
@@ -148,7 +150,8 @@ class PieceMaker {
     return piece;
   }
 
-  // Cubics of the offset curves' ends and derivatives there, where these are near enough.
+  // Appends a piece with cubic sides, from the ends and end derivatives of the offset curves, if
+  // they are accurate enough.
   bool append_sides(const Curve& curve) {
     StrokePiece piece = with_normals(curve, StrokePiece::Kind::kCurve);
     const Point2 begin_step = derivative_at(curve, 0.0);
@@ -173,7 +176,7 @@ class PieceMaker {
         const Point2 ahead = unit(step);
         const Point2 expected = point_at(curve, t) + side * left_of(ahead);
         const Point2 off = cubic_point(begin, controls, end, t) - expected;
-        // Along the curve it may be off by more.
+        // An error along the curve only shifts its parameter.
         if (!(std::fabs(cross(ahead, off)) <= 0.7 * tolerance_) ||
             !(std::fabs(dot(ahead, off)) <= 20.0 * tolerance_)) {
           return false;
@@ -185,7 +188,7 @@ class PieceMaker {
     return true;
   }
 
-  // The signed curvature at an end.
+  // Signed curvature at an end.
   static double curvature(std::span<const Point2> controls, double weight, bool at_end) {
     const std::size_t last = controls.size() - 1;
     const Point2 first_step =
@@ -207,7 +210,7 @@ class PieceMaker {
 
   double half_width_;
   double tolerance_;
-  double most_turning_;
+  double max_turning_;
   bool after_cusp_ = false;
   std::vector<StrokePiece> pieces_;
 };
@@ -216,7 +219,7 @@ class PieceMaker {
 
 std::vector<StrokePiece> stroke_pieces(const StrokePath& path, double half_width,
                                        double tolerance) {
-  return PieceMaker(half_width, tolerance).pieces_of(path);
+  return PieceBuilder(half_width, tolerance).pieces_of(path);
 }
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A pen's way as pieces whose sides are simple.
+// Splits a path to stroke into pieces whose offset curves are simple.
 #pragma once
 
 #include <array>
@@ -12,26 +12,26 @@
 
 namespace prefilter {
 
-/// Of the largest coordinate, what no tolerance is below: points of curves are off by some 2^-51 of
-/// it.
-inline constexpr double kLeastStrokeTolerance = 0x1p-44;
+/// Smallest tolerance, relative to the largest coordinate. Points of curves are rounded by about
+/// 2^-51 of it.
+inline constexpr double kMinRelativeStrokeTolerance = 0x1p-44;
 
-/// A piece of a pen's way with its normals, of length 1 and to the left, at both ends.
+/// Piece of a path with the unit normals to its left at both ends.
 struct StrokePiece {
   enum class Kind : std::uint8_t {
     kLine,   // one normal
-    kCurve,  // both sides are cubic
-    kFlat,   // as good as a line, but for the normals
+    kCurve,  // cubics on both sides
+    kFlat,   // straight within the tolerance, with different normals
   };
 
   Kind kind = Kind::kLine;
-  bool is_smooth = false;  // goes on from the piece before it
-  bool is_cusp = false;    // does not, though it is the same curve
+  bool is_smooth = false;  // continues the previous piece
+  bool is_cusp = false;    // has a corner with the previous piece within one curve
   Point2 begin;
   Point2 end;
   Point2 begin_normal;
   Point2 end_normal;
-  std::array<Point2, 2> left_controls;  // of kCurve, between the ends of the side
+  std::array<Point2, 2> left_controls;  // for kCurve: the inner control points
   std::array<Point2, 2> right_controls;
 
   double length() const {
@@ -40,9 +40,9 @@ struct StrokePiece {
   }
 };
 
-/// Cuts the curves of a path into pieces, each from where the last one ends: lines as they are,
-/// others so that what lies `half_width` beside them is within `tolerance` of the pieces' sides.
-/// None where the path has no length.
+/// Cuts the curves of a path into consecutive pieces. Lines are kept; other curves are cut until
+/// the offset curves at `half_width` are within `tolerance` of the pieces' sides. Empty if the path
+/// has no length.
 std::vector<StrokePiece> stroke_pieces(const StrokePath& path, double half_width, double tolerance);
 
 }  // namespace prefilter

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Offsets, joins and caps as SVG 1.1, section 11.4, defines them.
 #include "prefilter/shapes/outline/stroke_sides.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 namespace prefilter {
 namespace {
 
-// Where two pieces meet: the normals on both sides of the corner, and on which side of the way.
+// The joint of two pieces: the normals before and after it, and the signed offset of the side.
 struct Corner {
   Point2 at;
   Point2 before;
@@ -21,11 +22,11 @@ struct Corner {
 
   double turn() const { return cross(before, after); }
   double cosine() const { return dot(before, after); }
-  // Whether the ways beside the normals go on from each other.
+  // Whether the offsets before and after the joint coincide within half the tolerance.
   bool is_smooth(double tolerance) const {
     return cosine() > 0.0 && std::fabs(offset) * std::fabs(turn()) <= 0.5 * tolerance;
   }
-  // Where the offset lines beside the normals cross.
+  // Intersection of the offset lines before and after the joint.
   Point2 mitered() const { return at + (offset / (1.0 + cosine())) * (before + after); }
 };
 
@@ -33,9 +34,10 @@ Corner corner_of(const StrokePiece& piece, const StrokePiece& next, double offse
   return {piece.end, piece.end_normal, next.begin_normal, offset};
 }
 
-// Whether a side is on the inside of a corner of two lines long enough for their offsets to meet.
-bool meets_inside(const StrokePiece& piece, const StrokePiece& next, double offset,
-                  double tolerance) {
+// Whether a side is on the inside of a corner between two lines that are long enough for their
+// offsets to intersect.
+bool offsets_meet_inside(const StrokePiece& piece, const StrokePiece& next, double offset,
+                         double tolerance) {
   const Corner corner = corner_of(piece, next, offset);
   if (piece.kind != StrokePiece::Kind::kLine || next.kind != StrokePiece::Kind::kLine ||
       corner.is_smooth(tolerance)) {
@@ -47,10 +49,10 @@ bool meets_inside(const StrokePiece& piece, const StrokePiece& next, double offs
   return reach <= std::min(piece.length(), next.length());
 }
 
-// A circle's arc around the outside of a corner, of conics of a quarter at the most.
+// Appends a circular arc around the outside of a corner, as conics of at most a quarter circle.
 void append_arc(const Corner& corner, Outline* path) {
   double turn = elementary::atan2(corner.turn(), corner.cosine());
-  // About to turn back: around on this side.
+  // At a reversal the sign of the turn is arbitrary; the arc must bulge on this side.
   if ((turn > 0.0) == (corner.offset > 0.0)) turn = -turn;
   const int parts = std::fabs(turn) > 0.5 * std::numbers::pi * (1.0 + 1e-9) ? 2 : 1;
   const double step = turn / parts;
@@ -80,7 +82,7 @@ void append_join(const Corner& corner, StrokeJoin join, double miter_limit, doub
     append_arc(corner, path);
     return;
   }
-  // The square of the miter's length, in widths, is 2 / (1 + cos).
+  // The squared ratio of miter length to width is 2 / (1 + cos).
   if (join == StrokeJoin::kMiter && 2.0 <= miter_limit * miter_limit * (1.0 + corner.cosine())) {
     path->line_to(corner.mitered());
   }
@@ -103,9 +105,9 @@ bool is_folded(const StrokePiece& piece, double offset) {
          dot(chord + offset * (piece.end_normal - piece.begin_normal), chord) <= 0.0;
 }
 
-// Where a side runs backward the normals cross before they reach it, and what lies between
-// their crossings and the side counts negatively. Twice that area is added: the way goes along
-// the crossings, back along the side, and along the crossings again.
+// Where a side runs backward the normals cross before they reach it, and the area between their
+// crossings and the side counts negatively. Adding twice that area compensates: the path follows
+// the crossings, returns along the side, and follows the crossings again.
 void append_fold(std::span<const StrokePiece> pieces, double offset, Outline* path) {
   const auto append_crossings = [&] {
     for (const StrokePiece& piece : pieces) {
@@ -137,7 +139,8 @@ Outline stroke_side(std::span<const StrokePiece> pieces, bool is_closed, double 
     const StrokeJoin own = next.is_smooth || next.is_cusp ? StrokeJoin::kRound : join;
     append_join(corner_of(piece, next, offset), own, miter_limit, tolerance, &path);
   };
-  const bool begins_inside = is_closed && meets_inside(pieces.back(), pieces[0], offset, tolerance);
+  const bool begins_inside =
+      is_closed && offsets_meet_inside(pieces.back(), pieces[0], offset, tolerance);
   const Corner at_begin{pieces[0].begin, pieces.back().end_normal, pieces[0].begin_normal, offset};
   path.move_to(begins_inside ? at_begin.mitered()
                              : pieces[0].begin + offset * pieces[0].begin_normal);
@@ -152,7 +155,7 @@ Outline stroke_side(std::span<const StrokePiece> pieces, bool is_closed, double 
       if (next != nullptr) append_corner(pieces[i], *next);
       continue;
     }
-    const bool trims = next != nullptr && meets_inside(piece, *next, offset, tolerance);
+    const bool trims = next != nullptr && offsets_meet_inside(piece, *next, offset, tolerance);
     append_along(
         piece, offset,
         trims ? corner_of(piece, *next, offset).mitered() : piece.end + offset * piece.end_normal,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What bounds a stroke: its two sides, and caps.
+// The boundary of a stroke: two sides, and caps.
 #pragma once
 
 #include <span>
@@ -11,15 +11,15 @@
 
 namespace prefilter {
 
-/// One side of a way, `offset` to its left, with what goes around the outside of corners: an open
-/// contour, of an outline that has no other. On the inside of a corner it goes through the corner
-/// itself, unless the sides of two lines meet before. Pieces that are as good as one line within
+/// One side of a path at `offset` to its left, with the joins around the outside of corners: an
+/// outline of one open contour. On the inside of a corner the side passes through the corner
+/// itself, unless the offsets of two lines intersect before. Pieces that are collinear within
 /// `tolerance` have no corner between them.
 Outline stroke_side(std::span<const StrokePiece> pieces, bool is_closed, double offset,
                     StrokeJoin join, double miter_limit, double tolerance);
 
-/// Goes on from the right to the left of a way that ends at `end`, where `normal` points to its
-/// left.
+/// Appends a cap from the right to the left side of a path that ends at `end`, where `normal`
+/// points to its left.
 void append_cap(const Point2& end, const Point2& normal, double half_width, StrokeCap cap,
                 Outline* outline);
 

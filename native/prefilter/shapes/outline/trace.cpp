@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Boundaries put together from the chains of an arrangement.
+// Joins the chains of an arrangement to closed boundaries.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -11,7 +11,7 @@
 namespace prefilter {
 namespace {
 
-// Part of a segment on the way along a boundary.
+// Part of a segment along a boundary.
 struct Stretch {
   std::uint32_t contour = 0;
   std::uint32_t segment = 0;
@@ -23,7 +23,7 @@ struct Stretch {
   Point2 end;
 };
 
-// Whether `b` goes on along the segment where `a` ends.
+// Whether `b` continues the same segment where `a` ends.
 bool goes_on(const Stretch& a, const Stretch& b) {
   return a.contour == b.contour && a.segment == b.segment && a.reversed == b.reversed &&
          (a.reversed ? a.from == b.to : a.to == b.from);
@@ -67,19 +67,20 @@ class Arrangement::Tracer {
   }
 
  private:
-  // Where a chain begins and ends as a part of the boundary.
+  // The vertex where a chain begins or ends when followed along the boundary.
   std::uint32_t vertex(std::uint32_t i, bool at_end) const {
     const OutlineChain& chain = arrangement_.chains_[boundary_[i].chain];
     const bool end_cut = at_end != boundary_[i].reversed;
     return arrangement_.cuts_[end_cut ? chain.end_cut : chain.begin_cut].vertex;
   }
-  // Its number among those of the boundary.
+  // Index in `vertices_`.
   std::size_t number_of(std::uint32_t vertex) const {
     return static_cast<std::size_t>(std::lower_bound(vertices_.begin(), vertices_.end(), vertex) -
                                     vertices_.begin());
   }
 
-  // Sorts the chains by the vertex that they begin at; false where not as many end there.
+  // Groups the chains by their first vertex. Returns false unless as many chains end at each
+  // vertex.
   bool index_chains() {
     used_.assign(boundary_.size(), false);
     for (std::uint32_t i = 0; i < boundary_.size(); ++i) {
@@ -114,7 +115,7 @@ class Arrangement::Tracer {
     return arrangement_.chains_[boundary_[i].chain].begin_cut == OutlineChain::kNone;
   }
 
-  // At each vertex the sharpest turn to the left, so that contours touch there and do not cross.
+  // Takes the sharpest left turn at each vertex, so that contours touch there instead of crossing.
   std::uint32_t next_of(std::uint32_t i) const {
     const std::size_t at = number_of(vertex(i, true));
     std::uint32_t best = OutlineChain::kNone;
@@ -147,18 +148,18 @@ class Arrangement::Tracer {
     return turn > 0.0 ? turn : turn + 2.0 * std::numbers::pi;
   }
 
-  // Where a chain goes from its beginning, or comes from at its end: seen from the vertex.
+  // Direction of a chain at its first or last vertex, pointing away from the vertex.
   Point2 direction(std::uint32_t i, bool at_end) const {
     const OutlineChain& chain = arrangement_.chains_[boundary_[i].chain];
     const bool last = at_end != boundary_[i].reversed;
-    Part found;
+    Part end_part;
     arrangement_.visit_parts(chain, [&](const Part& part) {
-      found = part;
+      end_part = part;
       return last;
     });
-    const Curve whole =
-        arrangement_.contours_.curve(arrangement_.contours_.contours()[chain.contour], found.piece);
-    const PartOfCurve part(whole, found.from, found.to);
+    const Curve whole = arrangement_.contours_.curve(
+        arrangement_.contours_.contours()[chain.contour], end_part.piece);
+    const PartOfCurve part(whole, end_part.from, end_part.to);
     const auto controls = part.curve().controls;
     const std::size_t count = controls.size();
     for (std::size_t k = 1; k < count; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Shapes that cover each other, as pieces that only have to be added.
+// Splits layers that cover each other into disjoint pieces whose colors only need to be added.
 #pragma once
 
 #include <cstddef>
@@ -15,28 +15,27 @@
 
 namespace prefilter {
 
-/// A shape that covers those before it, as far as it is opaque.
+/// A shape that covers the shapes before it, as far as it is opaque.
 struct CoveringLayer {
   const Outline* outline = nullptr;
   FillRule fill_rule = FillRule::kNonzero;
   bool is_opaque = true;
 };
 
-/// Where a layer is seen through the same layers.
+/// A region in which a layer shows through a fixed set of overlays.
 struct VisiblePiece {
   std::size_t layer = 0;
-  /// The layers over it that are not opaque, from the lowest to the highest.
-  std::vector<std::uint32_t> veils;
-  Outline outline;  // as `resolve` would have it
+  /// Translucent layers above it, from the lowest to the highest.
+  std::vector<std::uint32_t> overlays;
+  Outline outline;  // in the form that `resolve` returns
 };
 
-/// The pieces of all layers that are seen, in the order of the layers. So the sum, over the pieces
-/// that hold a point, of the layer's color times 1 - alpha of each veil is what the layers, drawn
-/// one over the other, show there; colors are premultiplied. Pieces beside each other share their
-/// curves, bit for bit, so that no seam is left.
+/// The visible pieces of all layers, in the order of the layers. Drawing the layers over one
+/// another shows at each point the sum, over the pieces that contain the point, of the layer's
+/// premultiplied color times the product of 1 - alpha over its overlays. Adjacent pieces share
+/// their curves bit for bit, so that no seam appears.
 ///
-/// Nothing where rounding leaves unclear what crosses what, or where that takes more than an effort
-/// allows.
+/// Nothing if rounding makes the intersections ambiguous, or if the work exceeds `effort`.
 std::optional<std::vector<VisiblePiece>> visible_pieces(std::span<const CoveringLayer> layers,
                                                         ArrangementEffort effort, int threads = 0,
                                                         const Progress& progress = {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The values of a band of pixel rows, to which layers add.
+// Pixel values of a band of rows, accumulated layer by layer.
 #pragma once
 
 #include <algorithm>
@@ -17,11 +17,11 @@
 
 namespace prefilter {
 
-/// Sums are of doubles: what layers add to the same color rounds to that color. Blocks of 16 pixels
-/// of a row have one value as long as all of them are added the same.
+/// Sums are doubles, so that equal colors from several layers round to the color itself. A block of
+/// 16 pixels of a row stores one value as long as all its pixels receive the same.
 class BandValues {
  public:
-  /// All rows have the background's values. What was there before is forgotten.
+  /// Sets all rows to the background.
   void reset(int width, int rows, int channels, const ChannelValues& background) {
     width_ = width;
     channels_ = channels;
@@ -31,22 +31,21 @@ class BandValues {
     states_.assign(blocks, State::kBackground);
     if (colors_.size() < blocks) colors_.resize(blocks);
     const std::size_t values = static_cast<std::size_t>(width) * rows * channels;
-    if (room_ < values) {
+    if (capacity_ < values) {
       values_ = std::make_unique_for_overwrite<double[]>(values);
-      room_ = values;
+      capacity_ = values;
     }
   }
 
   int channels() const { return channels_; }
 
-  /// The values of the pixels [begin, end) of a row, to be added to; end is above begin.
+  /// Values of the pixels [begin, end) of a row, to be added to; `end` is above `begin`.
   double* pixels(int row, int begin, int end) {
     for (int block = begin >> kBlockBits; block <= (end - 1) >> kBlockBits; ++block) {
-      if (states_[block_place(row, block)] != State::kPixels) open(row, block);
+      if (states_[block_index(row, block)] != State::kPixels) make_individual(row, block);
     }
     return values_.get() + row_begin(row) + static_cast<std::size_t>(begin) * channels_;
   }
-  /// Those of all of its pixels.
   double* row(int row) { return pixels(row, 0, width_); }
 
   /// Adds `coverage` times a color to the pixels [begin, end) of a row.
@@ -58,15 +57,15 @@ class BandValues {
       const int block_end = end_of(block);
       const int to = std::min(end, block_end);
       const bool is_whole = begin == block << kBlockBits && to == block_end;
-      if (is_whole && states_[block_place(row, block)] != State::kPixels) {
-        add_to(values, &even_color(row, block));
+      if (is_whole && states_[block_index(row, block)] != State::kPixels) {
+        add_to(values, &uniform_color(row, block));
       } else {
         add_to_pixels(values, to - begin, pixels(row, begin, to));
       }
       begin = to;
     }
   }
-  /// Adds coverage_of(i) times a color to the pixel begin + i of a row, for each of `count`.
+  /// Adds coverage_of(i) times a color to the pixels begin + i of a row, for i in [0, count).
   template <typename CoverageOf>
   void add_each(int row, int begin, int count, const CoverageOf& coverage_of,
                 const ChannelValues& color) {
@@ -81,7 +80,7 @@ class BandValues {
     });
   }
 
-  /// The row as floats.
+  /// Writes the row as floats.
   void store(int row, float* out) const {
     store_blocks(
         row, out, [](double value) { return static_cast<float>(value); },
@@ -90,7 +89,7 @@ class BandValues {
                          [](double value) { return static_cast<float>(value); });
         });
   }
-  /// The row as bytes, those of its floats.
+  /// Writes the row as bytes, rounded from its floats.
   void store(int row, std::uint8_t* out) const {
     store_blocks(row, out, unit_byte<double>, unit_bytes<double>);
   }
@@ -100,14 +99,14 @@ class BandValues {
   static constexpr int kBlock = 1 << kBlockBits;
   enum class State : std::uint8_t {
     kBackground,
-    kEven,    // all over the value in colors_
-    kPixels,  // those in values_
+    kUniform,  // all pixels have the block's value in colors_
+    kPixels,   // each pixel has its value in values_
   };
 
   std::size_t row_begin(int row) const {
     return static_cast<std::size_t>(row) * width_ * channels_;
   }
-  std::size_t block_place(int row, int block) const {
+  std::size_t block_index(int row, int block) const {
     return static_cast<std::size_t>(row) * blocks_ + block;
   }
   int end_of(int block) const { return std::min((block + 1) << kBlockBits, width_); }
@@ -124,19 +123,19 @@ class BandValues {
       }
     });
   }
-  // The color of a block whose pixels have one.
-  ChannelValues& even_color(int row, int block) {
-    const std::size_t place = block_place(row, block);
-    if (states_[place] == State::kBackground) {
-      colors_[place] = background_;
-      states_[place] = State::kEven;
+  // Color of a block whose pixels share it.
+  ChannelValues& uniform_color(int row, int block) {
+    const std::size_t index = block_index(row, block);
+    if (states_[index] == State::kBackground) {
+      colors_[index] = background_;
+      states_[index] = State::kUniform;
     }
-    return colors_[place];
+    return colors_[index];
   }
-  // Gives a block's pixels values of their own.
-  void open(int row, int block) {
-    const ChannelValues color = even_color(row, block);
-    states_[block_place(row, block)] = State::kPixels;
+  // Gives each pixel of a block its own value.
+  void make_individual(int row, int block) {
+    const ChannelValues color = uniform_color(row, block);
+    states_[block_index(row, block)] = State::kPixels;
     const int begin = block << kBlockBits;
     fill(end_of(block) - begin, color,
          values_.get() + row_begin(row) + static_cast<std::size_t>(begin) * channels_);
@@ -144,23 +143,23 @@ class BandValues {
 
   template <typename T>
   void fill(int width, const std::array<T, kMaxChannels>& color, T* out) const {
-    const std::array<T, kMaxChannels> values = color;  // which nothing else can be written to
+    const std::array<T, kMaxChannels> values = color;  // a local copy, which `out` cannot alias
     with_channel_count(channels_, [&](auto channels) {
       for (int x = 0; x < width; ++x) {
         for (int c = 0; c < channels(); ++c) *out++ = values[c];
       }
     });
   }
-  // Calls store_pixels(values, out) for pixels of their own values, which are stored as `stored`
-  // has it of one.
+  // Writes a row: runs of individual pixels by store_pixels(values, out), uniform values by
+  // `stored`.
   template <typename T, typename Stored, typename StorePixels>
   void store_blocks(int row, T* out, const Stored& stored, const StorePixels& store_pixels) const {
-    const State* states = states_.data() + block_place(row, 0);
+    const State* states = states_.data() + block_index(row, 0);
     for (int block = 0; block < blocks_;) {
       const State state = states[block];
       const int first = block++;
-      // Those with values of their own, and those without any, in one.
-      while (block < blocks_ && states[block] == state && state != State::kEven) ++block;
+      // Joins adjacent blocks with individual values, and adjacent background blocks.
+      while (block < blocks_ && states[block] == state && state != State::kUniform) ++block;
       const int begin = first << kBlockBits;
       const int count = end_of(block - 1) - begin;
       T* to = out + static_cast<std::size_t>(begin) * channels_;
@@ -170,7 +169,7 @@ class BandValues {
         continue;
       }
       const ChannelValues& color =
-          state == State::kEven ? colors_[block_place(row, first)] : background_;
+          state == State::kUniform ? colors_[block_index(row, first)] : background_;
       std::array<T, kMaxChannels> values;
       std::transform(color.begin(), color.end(), values.begin(), stored);
       fill(count, values, to);
@@ -179,12 +178,12 @@ class BandValues {
 
   int width_ = 0;
   int channels_ = 1;
-  int blocks_ = 0;  // of a row
+  int blocks_ = 0;  // per row
   ChannelValues background_{};
   std::vector<State> states_;
   std::vector<ChannelValues> colors_;
-  std::unique_ptr<double[]> values_;  // of blocks that have them
-  std::size_t room_ = 0;
+  std::unique_ptr<double[]> values_;  // of blocks in the state kPixels
+  std::size_t capacity_ = 0;
 };
 
 }  // namespace prefilter

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// The box filter of section 2.2 by differences along rows, in bands that fit into the cache.
 #include "prefilter/shapes/raster/box_coverage.h"
 
 #include <algorithm>
@@ -41,11 +42,11 @@ void write_bytes(BoxCoverage* coverage, const ByteRows& target) {
 }
 
 void check_size(const ByteRows& target) {
-  if (target.width < 1 || target.height < 1 || target.width > kMostBoxPixels ||
-      target.height > kMostBoxPixels) {
+  if (target.width < 1 || target.height < 1 || target.width > kMaxBoxImageSide ||
+      target.height > kMaxBoxImageSide) {
     throw_invalid("target: found " + std::to_string(target.width) + " x " +
                   std::to_string(target.height) + " pixels; 1 to " +
-                  std::to_string(kMostBoxPixels) + " are possible along a side");
+                  std::to_string(kMaxBoxImageSide) + " are possible along a side");
   }
 }
 
@@ -58,13 +59,13 @@ void check_points(bool are_all_near) {
 }  // namespace
 
 bool BoxCoverage::add_segment(std::span<const Point2> controls, double weight) {
-  if (controls.size() == 2 && is_near(controls[0], kFarthestBoxPixel) &&
-      is_near(controls[1], kFarthestBoxPixel)) {
+  if (controls.size() == 2 && is_near(controls[0], kMaxBoxCoordinate) &&
+      is_near(controls[1], kMaxBoxCoordinate)) {
     lines_.line_to(controls[1]);
     return true;
   }
   for (const Point2& point : controls) {
-    if (!is_near(point, kFarthestPixel)) return false;
+    if (!is_near(point, kMaxPixelCoordinate)) return false;
   }
   curves_.add(controls, weight);
   lines_.move_to(controls.back());
@@ -73,7 +74,7 @@ bool BoxCoverage::add_segment(std::span<const Point2> controls, double weight) {
 
 bool BoxCoverage::add_polygon(std::span<const Point2> points) {
   for (std::size_t i = 1; i < points.size(); ++i) {
-    if (is_near(points[i - 1], kFarthestBoxPixel)) {
+    if (is_near(points[i - 1], kMaxBoxCoordinate)) {
       i += lines_.lines_to(points.data() + i, points.size() - i);
       if (i == points.size()) break;
     }
@@ -105,7 +106,7 @@ bool BoxCoverage::add(const Outline& outline) {
 }
 
 void BoxCoverage::add(const EdgeList& edges) {
-  Point2 at{NAN, NAN};  // No point is there, so that the first segment begins with a move.
+  Point2 at{NAN, NAN};  // matches no point, so that the first segment starts with a move
   edges.for_segments_between(rows_.first_row(), rows_.end_row(),
                              [&](std::span<const Point2> controls, double weight) {
                                if (!(at == controls.front())) lines_.move_to(controls.front());
@@ -117,7 +118,8 @@ void BoxCoverage::add(const EdgeList& edges) {
 
 void BoxRasterizer::draw(const Outline& outline, const ByteRows& target) {
   check_size(target);
-  // Differences of a few rows stay in a processor's cache; many segments are better seen once.
+  // The differences of a few rows stay in the cache; outlines with many segments are better
+  // traversed fewer times.
   const bool is_simple = outline.points().size() < 4096;
   const int band_values = is_simple ? 1 << 18 : 1 << 22;
   const int rows = std::max(16, band_values / target.width);
@@ -133,7 +135,7 @@ void BoxRasterizer::draw(const Outline& outline, const ByteRows& target) {
 void rasterize_coverage(const Outline& outline, FillRule rule, const ByteRows& target, int threads,
                         const Progress& progress) {
   check_size(target);
-  for (const Point2& point : outline.points()) check_points(is_near(point, kFarthestPixel));
+  for (const Point2& point : outline.points()) check_points(is_near(point, kMaxPixelCoordinate));
   const std::optional<Outline> simple = resolved(outline, rule);
   EdgeList edges;
   edges.add(simple ? *simple : outline);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What outlines cover of pixels: the box filter of chapter 2, on a way of its own.
+// Coverage of pixels by outlines under the box filter (section 2.2): the fast path for it.
 #pragma once
 
 #include <cstddef>
@@ -15,27 +15,27 @@
 
 namespace prefilter {
 
-/// Images wider or higher than this have pixels too far away.
-inline constexpr int kMostBoxPixels = 1 << 23;
+/// The largest image side, in pixels; farther coordinates are too coarse.
+inline constexpr int kMaxBoxImageSide = 1 << 23;
 
-/// The coverage of outlines in a band of rows. What a segment adds depends neither on the band nor
-/// on what is added with it.
+/// Coverage of outlines in a band of rows. The contribution of a segment depends neither on the
+/// band nor on other segments, so that images do not depend on how they are split.
 class BoxCoverage {
  public:
   BoxCoverage() = default;
   BoxCoverage(const BoxCoverage&) = delete;
   BoxCoverage& operator=(const BoxCoverage&) = delete;
 
-  /// For the rows [first_row, end_row) of an image.
+  /// Starts the rows [first_row, end_row) of an image.
   void begin(int width, int first_row, int end_row) { rows_.begin(width, first_row, end_row); }
 
-  /// An outline that winds once round what it fills. Coordinates must be finite, and within 1e9;
-  /// returns false where one is not.
+  /// Adds an outline that winds once around its filled part. Returns false if a coordinate is not
+  /// finite, or above 1e9 in magnitude.
   bool add(const Outline& outline);
-  /// The same of segments that are known to be within.
+  /// Adds segments whose coordinates are known to be in range.
   void add(const EdgeList& edges);
 
-  /// As DifferenceRows::take().
+  /// See DifferenceRows::take().
   template <typename Block, typename Run>
   void take(const Block& block, const Run& run) {
     rows_.take(block, run);
@@ -50,7 +50,7 @@ class BoxCoverage {
   BoxCurves curves_{&rows_};
 };
 
-/// Where coverage goes, of 8 bits: the row y of pixels begins at data + y * stride.
+/// Target of 8-bit coverage: pixel row y begins at data + y * stride.
 struct ByteRows {
   std::uint8_t* data = nullptr;
   int width = 0;   // pixels
@@ -58,20 +58,20 @@ struct ByteRows {
   std::ptrdiff_t stride = 0;
 };
 
-/// Draws outlines one after another, each into an image of its own, with memory that is kept.
+/// Draws outlines into images of their own, one after another, and reuses memory.
 class BoxRasterizer {
  public:
-  /// Writes what an outline covers of each pixel, 0 to 255 rounded to the nearest, into rows that
-  /// are all 0. The outline has to wind once round what it fills, as `resolve` makes it; below 0
-  /// and above 1 coverage is cut off. Throws Error for coordinates that are not finite, or farther
-  /// away than 1e9 pixels, and for sizes that are not 1 to kMostBoxPixels.
+  /// Writes the coverage of each pixel, 0 to 255 rounded to the nearest, into rows that must be all
+  /// 0. The outline must wind once around its filled part, as the result of `resolve` does.
+  /// Coverage is clamped to [0, 1]. Throws Error for coordinates that are not finite, or above 1e9
+  /// in magnitude, and for sides outside 1 to kMaxBoxImageSide.
   void draw(const Outline& outline, const ByteRows& target);
 
  private:
   BoxCoverage coverage_;
 };
 
-/// The same for any outline, on several threads.
+/// Draws the coverage of any outline, on several threads. See BoxRasterizer::draw.
 void rasterize_coverage(const Outline& outline, FillRule rule, const ByteRows& target,
                         int threads = 0, const Progress& progress = {});
 

@@ -2,11 +2,11 @@
 
 // Section 2.2 for curves and the box filter.
 //
-// As in box_lines.cpp, a row's pixels follow from E_k, the integral over y of how far x is beyond a
-// line between columns; the integral of x dy along a piece of a curve is a polynomial of its
-// parameter. An error of a root changes an E_k, and an integral that goes on to the line between
-// rows at a constant x, by its square only: 1e-5 pixels by less than 1e-9 where the curve rises
-// at less than 10 to 1.
+// As in box_lines.cpp, a row's pixels follow from E_k, the integral over y of the distance by which
+// x exceeds a line between columns. The integral of x dy along a piece of a curve is a polynomial
+// of the curve's parameter. An error in a root changes E_k, and integrals that continue to the line
+// between rows at a constant x, only by its square: 1e-5 pixels by less than 1e-9 where the curve
+// rises by less than 10 to 1.
 
 #include "prefilter/shapes/raster/box_curves.h"
 
@@ -21,19 +21,19 @@ namespace prefilter {
 namespace {
 
 bool is_far(const Point2& p) {
-  return std::abs(p.x) > kFarthestBoxPixel || std::abs(p.y) > kFarthestBoxPixel;
+  return std::abs(p.x) > kMaxBoxCoordinate || std::abs(p.y) > kMaxBoxCoordinate;
 }
 
 bool is_monotone(double a, double b, double c, double d) {
   return (a <= b && b <= c && c <= d) || (a >= b && b >= c && c >= d);
 }
 
-// Two at a time, the second may be one too many.
+// Stores two values; the second may be one past the last.
 void store_two(double* to, DoublePair values) { std::memcpy(to, &values, sizeof(values)); }
 
 }  // namespace
 
-// Polynomials along a piece in two places at once.
+// Evaluates the polynomials of a piece at two parameters at once.
 template <bool kIsCubic>
 class BoxCurves::Values {
  public:
@@ -127,7 +127,7 @@ void BoxCurves::add(std::span<const Point2> controls, double weight) {
   if (high <= rows_.first_row() || low >= rows_.end_row()) return;
   const bool is_quadratic = controls.size() == 3 && weight == 0.0;
   if (is_quadratic || controls.size() == 4) {
-    // Where the controls do not turn, the curve does not.
+    // A curve is monotone if its control points are.
     const Point2& second = controls[is_quadratic ? 1 : 2];
     const Point2& last = controls.back();
     if (is_monotone(controls[0].x, controls[1].x, second.x, last.x) &&
@@ -170,12 +170,12 @@ void BoxCurves::add(const MonotoneCurve& piece, int sign) {
   } else {
     find_rows<false>(polynomial, low, high, rises);
   }
-  const int places = at_rows_.count;
+  const int points = at_rows_.count;
   const std::int32_t* columns = at_rows_.column.data();
-  const bool x_rises = at_rows_.x[places - 1] >= at_rows_.x[0];
-  // Lines between columns that matter in the image.
-  const int first_line = std::max(std::min(columns[0], columns[places - 1]) + 1, 0);
-  const int end_line = std::max(columns[0], columns[places - 1]) + 1;
+  const bool x_rises = at_rows_.x[points - 1] >= at_rows_.x[0];
+  // The lines between columns that are in the image.
+  const int first_line = std::max(std::min(columns[0], columns[points - 1]) + 1, 0);
+  const int end_line = std::max(columns[0], columns[points - 1]) + 1;
   if (is_cubic) {
     find_columns<true>(polynomial, first_line, end_line);
   } else {
@@ -184,7 +184,7 @@ void BoxCurves::add(const MonotoneCurve& piece, int sign) {
 
   const double scale = static_cast<double>(1 << kBoxBits) * (rises ? sign : -sign);
   DifferenceRows::Row to = rows_.row(static_cast<int>(std::floor(at_rows_.y[0])));
-  for (int i = 0; i + 1 < places; ++i, to = rows_.next(to)) {
+  for (int i = 0; i + 1 < points; ++i, to = rows_.next(to)) {
     const double y = at_rows_.y[i];
     const double top = at_rows_.y[i + 1];
     const double height = top - y;
@@ -208,7 +208,7 @@ void BoxCurves::add(const MonotoneCurve& piece, int sign) {
   }
 }
 
-// All other curves, cell by cell.
+// Adds conics and distant curves cell by cell.
 void BoxCurves::add_cells(const MonotoneCurve& piece, int sign) {
   const GridWindow window{0, rows_.width(), rows_.first_row(), rows_.end_row()};
   const auto in_cell = [&](int column, int row, const CellArc& arc) {

@@ -14,36 +14,37 @@
 
 namespace prefilter {
 
-/// Adds up pieces of curves. Ends are rounded to multiples of kBoxUnit, as those of lines are.
+/// Accumulates pieces of curves. Their ends are rounded to multiples of kBoxUnit, as the ends of
+/// lines are.
 class BoxCurves {
  public:
   explicit BoxCurves(DifferenceRows* rows) : rows_(*rows) {}
 
-  /// A segment of any kind by its control points, as Outline has it.
+  /// Adds a segment of any kind, with control points and weight as in Outline.
   void add(std::span<const Point2> controls, double weight);
 
  private:
-  /// Where a piece is, and its area from the start up to there.
-  struct Places {
+  /// Points of a piece, and the area from its start to each.
+  struct CurvePoints {
     std::vector<double> x;
     std::vector<double> y;
     std::vector<double> area;
-    std::vector<std::int32_t> column;  // where one may add differences
+    std::vector<std::int32_t> column;  // clamped to the columns of the differences
 
     int count = 0;
 
-    void make_room(int places) {
-      if (static_cast<std::size_t>(places) <= x.size()) return;
-      x.resize(places);
-      y.resize(places);
-      area.resize(places);
-      column.resize(places);
+    void make_room(int points) {
+      if (static_cast<std::size_t>(points) <= x.size()) return;
+      x.resize(points);
+      y.resize(points);
+      area.resize(points);
+      column.resize(points);
     }
   };
   template <bool kIsCubic>
   class Values;
 
-  /// The region on the right of a piece counts `sign` times.
+  /// The region to the right of a piece counts `sign` times.
   void add(const MonotoneCurve& piece, int sign);
   template <bool kIsCubic>
   void find_rows(const MonotonePolynomials& piece, double low, double high, bool rises);
@@ -54,8 +55,8 @@ class BoxCurves {
   DifferenceRows& rows_;
   ArcBatch<0> batch_;
   ArcBatch<0>::Cells cell_;
-  Places at_rows_;     // at the ends of a piece and at the lines between rows in between
-  Places at_columns_;  // at the lines between columns
+  CurvePoints at_rows_;     // at the ends of a piece and at the lines between rows
+  CurvePoints at_columns_;  // at the lines between columns
 };
 
 }  // namespace prefilter

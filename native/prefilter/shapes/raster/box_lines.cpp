@@ -2,11 +2,11 @@
 
 // Section 2.2 for lines and the box filter.
 //
-// In one row let x run along a line from L to R while y rises by d, from the column i of L on. With
-// E_k, the integral over y of how far x is beyond column i + k, where it is, the pixel i + k is
-// covered by d - E_k + E_(k + 1). Of a line E_k is c (R - i - k)^2 with c = 1 / (2 |slope|), and
-// E_0 is d (L + R - 2 i) / 2. Each is rounded by itself, so the pixels of a row add up to d
-// exactly.
+// In one row, let x run along a line from L to R while y rises by d, and let i be the column of L.
+// Let E_k be the integral over y of the distance by which x exceeds the left side of column i + k.
+// The coverage of pixel i + k is d - E_k + E_(k + 1). For a line, E_k is c (R - i - k)^2 with c = 1
+// / (2 |slope|), and E_0 is d (L + R - 2 i) / 2. Each E_k is rounded once, so the pixels of a row
+// add up to d exactly.
 
 #include "prefilter/shapes/raster/box_lines.h"
 
@@ -17,10 +17,10 @@
 namespace prefilter {
 namespace {
 
-// Below, a line is as good as vertical, and its c has no use.
-constexpr double kLeastSlope = 1e-9;
+// Columns per row. A steeper line counts as vertical, and its c is not used.
+constexpr double kMinSlope = 1e-9;
 
-double half_over(double slope) { return 0.5 / std::max(std::abs(slope), kLeastSlope); }
+double half_over(double slope) { return 0.5 / std::max(std::abs(slope), kMinSlope); }
 
 }  // namespace
 
@@ -43,7 +43,7 @@ void BoxLines::flush() {
   if (row < rows_.first_row() || row >= rows_.end_row()) return;
   const auto column = static_cast<int>(cell_[0]);
   if (column >= rows_.width()) return;
-  // A line that falls has the region that it adds to on its right.
+  // A falling line adds the region on its right.
   rows_.row(row).add_two(rows_.clamped(column), part - height, 0U - part);
 }
 
@@ -62,8 +62,8 @@ void BoxLines::leave_cell(const Point2& point) {
 std::size_t BoxLines::lines_to(const Point2* points, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     if (stays_in_cell(points[i])) continue;
-    if (!(std::abs(points[i].x) <= kFarthestBoxPixel &&
-          std::abs(points[i].y) <= kFarthestBoxPixel)) {
+    if (!(std::abs(points[i].x) <= kMaxBoxCoordinate &&
+          std::abs(points[i].y) <= kMaxBoxCoordinate)) {
       return i;
     }
     leave_cell(points[i]);
@@ -86,7 +86,8 @@ void BoxLines::add_line(Point2 low, Point2 high, double scale) {
     add_left(begin, end, scale);
     return;
   }
-  // Rows in which the line is beyond a side, by more than what rounding is worth, are not cut.
+  // Rows in which the line is outside the image, with a margin of a row for rounding, need no
+  // cutting.
   const auto row_at = [&](double x) {
     return std::floor(std::clamp(low.y + (x - low.x) / slope, begin, end));
   };
@@ -136,7 +137,7 @@ void BoxLines::add_left(double from, double to, double scale) {
 
 namespace {
 
-// Two rows of a line.
+// A line's part in two rows.
 struct RowPair {
   IntFour column;
   IntFour height;
@@ -145,7 +146,7 @@ struct RowPair {
   IntFour farther;  // E_2
 };
 
-// A line that rises, as both rows of a pair have it.
+// A rising line, with its values duplicated for the two rows of a pair.
 struct NarrowLine {
   NarrowLine(const Point2& low, double slope, double begin, double end, double scale, int width)
       : c(pair_of(half_over(slope) * scale)),
@@ -159,7 +160,7 @@ struct NarrowLine {
         half_scale(pair_of(0.5 * scale)),
         full_height(joined(round_to_int(pair_of(scale)), round_to_int(pair_of(scale)))) {}
 
-  // In each row no more than kColumns columns. `is_full`: the line passes all of both.
+  // At most kColumns columns in each row. `is_full`: the line passes both rows from bottom to top.
   template <int kColumns, bool is_full>
   RowPair rows_at(DoublePair y) const {
     RowPair out;
@@ -204,7 +205,7 @@ struct NarrowLine {
 
 }  // namespace
 
-// In each row no more than three columns, or two where kColumns is that: four differences, of four
+// Adds a line that crosses at most kColumns columns in each row: four differences per row, four
 // rows at once.
 template <int kColumns>
 void BoxLines::add_narrow(const Point2& low, double slope, double begin, double end, double scale) {
@@ -270,11 +271,11 @@ void BoxLines::add_wide(const Point2& low, double slope, double begin, double en
     const double first = std::floor(left);
     if (first >= width) continue;
     const std::uint32_t height = to_steps((to - from) * scale);
-    // From the first column in the image, or the last of the line's, on.
-    constexpr double kLeast = -DifferenceRows::kMargin;
+    // Starts at the first column in the image, or at the line's last column.
+    constexpr double kMinColumn = -DifferenceRows::kMargin;
     const double last = std::floor(right);
-    const auto begin_column = static_cast<int>(std::max({first, std::min(last, -1.0), kLeast}));
-    const auto end_column = static_cast<int>(std::min<double>(std::max(last, kLeast), width));
+    const auto begin_column = static_cast<int>(std::max({first, std::min(last, -1.0), kMinColumn}));
+    const auto end_column = static_cast<int>(std::min<double>(std::max(last, kMinColumn), width));
     const double inside = (left - first + (right - first)) * 0.5 * (to - from) * scale;
     const double first_beyond = right - begin_column;
     std::uint32_t beyond =

@@ -10,18 +10,18 @@
 
 namespace prefilter {
 
-/// Coordinates are rounded to multiples of kBoxUnit, which 2^25 pixels away is the last bit of a
-/// double. Farther away than this, lines are left to others.
-inline constexpr double kFarthestBoxPixel = 1 << 24;
+/// Largest coordinate of a line, in pixels. Coordinates are rounded to multiples of kBoxUnit, which
+/// is the last bit of a double at 2^25 pixels; lines farther away take another path.
+inline constexpr double kMaxBoxCoordinate = 1 << 24;
 
-/// A multiple of kBoxUnit.
+/// Rounds to a multiple of kBoxUnit.
 inline double rounded_to_unit(double value) {
   constexpr double kShift = 1.5 * (1 << 26);
   return (value + kShift) - kShift;
 }
 
-/// Adds up a chain of lines. What a line adds is the negative, to the last bit, of what it adds the
-/// other way round, whatever lines are before it.
+/// Accumulates a chain of lines. A line and its reverse cancel to the last bit, independent of the
+/// preceding lines.
 class BoxLines {
  public:
   explicit BoxLines(DifferenceRows* rows) : rows_(*rows) {}
@@ -31,21 +31,22 @@ class BoxLines {
     begin_at({rounded_to_unit(point.x), rounded_to_unit(point.y)});
   }
 
-  /// Both ends must be within kFarthestBoxPixel.
+  /// Both ends must be within kMaxBoxCoordinate.
   void line_to(const Point2& point) {
     if (!stays_in_cell(point)) leave_cell(point);
   }
 
-  /// The same for many; returns how many it has done: it stops before a point farther away.
+  /// Adds several lines. Stops before a point that is too far, and returns the number of lines
+  /// added.
   std::size_t lines_to(const Point2* points, std::size_t count);
 
-  /// To be called at the end.
+  /// Adds the pending part of the last cell; must be called at the end.
   void flush();
 
  private:
   static constexpr std::uint32_t kOne = 1U << kBoxBits;
 
-  // Lines that stay in a cell cost a multiplication: their ends are whole numbers there.
+  // A line within a cell costs one multiplication, as its ends are whole numbers there.
   bool stays_in_cell(const Point2& point) {
     constexpr double kScale = kOne;
     const IntFour place = round_to_int((DoublePair{point.x, point.y} - cell_) * kScale);
@@ -54,7 +55,7 @@ class BoxLines {
     if (((x | y) & ~(kOne - 1)) != 0) return false;
     const std::int64_t height = static_cast<std::int64_t>(y) - y_;
     const std::int64_t twice = (static_cast<std::int64_t>(x) + x_) * height;
-    // Halves are rounded away from 0: the other way round is the same.
+    // Halves are rounded away from 0, so that the reverse gives the negative.
     part_ += (twice + kOne + (twice >> 63)) >> (kBoxBits + 1);
     x_ = x;
     y_ = y;
@@ -63,18 +64,18 @@ class BoxLines {
   void leave_cell(const Point2& point);
   void begin_at(const Point2& point);
   void add_line(Point2 low, Point2 high, double scale);
-  // Rows from y to y in which a line is left of the image.
+  // Adds rows in which a line is left of the image.
   void add_left(double from, double to, double scale);
   template <int kColumns>
   void add_narrow(const Point2& low, double slope, double begin, double end, double scale);
   void add_wide(const Point2& low, double slope, double begin, double end, double scale);
 
   DifferenceRows& rows_;
-  DoublePair cell_{};    // its lower left corner
-  std::uint32_t x_ = 0;  // where the chain is, in the cell
+  DoublePair cell_{};    // lower left corner
+  std::uint32_t x_ = 0;  // current point, in the cell
   std::uint32_t y_ = 0;
-  std::uint32_t begin_y_ = 0;  // where it came into the cell
-  std::int64_t part_ = 0;      // the integral of x dy in the cell since then
+  std::uint32_t begin_y_ = 0;  // where the chain entered the cell
+  std::int64_t part_ = 0;      // integral of x dy in the cell since then
 };
 
 }  // namespace prefilter

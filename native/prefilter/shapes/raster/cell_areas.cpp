@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Exact areas between parabolic arcs in the slabs of a cell.
 #include "prefilter/shapes/raster/cell_areas.h"
 
 namespace prefilter {
@@ -27,7 +28,7 @@ void CellAreas::add_slab(std::span<const CellLayer> layers, const CellColors& co
     present = slabs_.cross(arc, layers, present);
     const std::size_t next = state_of(present, colors);
     if (next == state) continue;
-    // A parabola's mean is that in the middle, and a twelfth of what it bends.
+    // A parabola's mean is its value at the middle plus a twelfth of its second difference.
     const double x = arc.x + arc.bend * height * height / 12.0;
     add(state, height * (x - left));
     left = x;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What a cell shows on average of layers of constant colors, from the areas between arcs.
+// Mean color of a cell under layers of constant colors, from the areas between arcs.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@
 
 namespace prefilter {
 
-/// Goes up through a cell as CellSweep does, for the box filter, which asks for no more than areas:
-/// between two heights at which an arc ends or two cross, each is an integral of a parabola.
+/// The counterpart of CellSweep for the box filter, which needs only areas: in each slab of a cell,
+/// an area is the integral of a parabola.
 class CellAreas {
  public:
-  /// Sets the mean of what a cell shows less the background. `layers` are those that are seen, up
-  /// to 63 of them. Returns false where that takes more than `most_work` steps.
+  /// Computes the mean color of a cell minus the background. `layers` are the visible layers, at
+  /// most 63. Returns false if that takes more than `most_work` steps.
   bool find(std::span<const CellLayer> layers, const CellColors& colors, std::size_t most_work);
   const ChannelValues& mean() const { return mean_; }
-  /// How many steps that took.
+  /// Steps taken.
   std::size_t work() const { return slabs_.work(); }
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Kernels are piecewise polynomials already; radial filters are fitted cell by cell.
 #include "prefilter/shapes/raster/cell_filter.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@
 namespace prefilter {
 namespace {
 
-// A polynomial of t on [0, 1] times `scale`, in the coordinate t - 1/2 instead.
+// Appends `scale` times a polynomial of t on [0, 1], expressed in t - 1/2.
 void add_centered(const Kernel::Piece& piece, int degree, double scale, std::vector<double>* out) {
   for (int power = 0; power <= degree; ++power) {
     double sum = 0.0;
@@ -40,7 +41,7 @@ CellFilter cell_filter(const Kernel& kernel) {
   filter.cells_per_pixel = static_cast<int>(std::lround(1.0 / kernel.piece_width()));
   filter.taps = static_cast<int>(kernel.pieces().size());
   filter.degree = kernel.degree() <= 3 ? kernel.degree() : Kernel::kMostDegree;
-  // Pixel i's first cell begins at i + 1/2 - radius.
+  // The first cell of pixel i begins at i + 1/2 - radius.
   const double low = (0.5 - kernel.radius()) * filter.cells_per_pixel;
   filter.first = static_cast<int>(std::ceil(low));
   filter.shift = filter.first - low;
@@ -52,8 +53,8 @@ CellFilter cell_filter(const Kernel& kernel) {
 
 namespace {
 
-// Legendre's polynomials of degrees 0 to N - 1 on [-1/2, 1/2], by powers, with squares of
-// integral 1.
+// Coefficients of the Legendre polynomials of degree 0 to N - 1 on [-1/2, 1/2], normalized so that
+// their squares integrate to 1.
 template <int N>
 std::array<std::array<double, N>, N> legendre_powers() {
   std::array<std::array<double, N>, N> powers{};
@@ -71,12 +72,12 @@ std::array<std::array<double, N>, N> legendre_powers() {
   return powers;
 }
 
-// Each piece is the nearest polynomial in the mean square: where the circle at which the filter
-// ends passes a cell, one that interpolates would have another integral.
+// Fits a polynomial to the radial filter on each cell in the least-squares sense. Interpolation
+// would change the integral of cells that the filter's bounding circle crosses.
 CellFilter of_radial(double radius) {
   constexpr int kCount = Kernel::kMostDegree + 1;
-  constexpr int kMostTotalDegree = 8;
-  constexpr int kParts = 8;  // of a cell along each axis, with four points each
+  constexpr int kMaxTotalDegree = 8;
+  constexpr int kParts = 8;  // per cell along each axis, with four points each
   const WindowedJinc jinc(radius);
   CellFilter filter;
   filter.is_separable = false;
@@ -103,7 +104,8 @@ CellFilter of_radial(double radius) {
   double* piece = filter.table.data();
   for (int oy = 0; oy < filter.taps; ++oy) {
     for (int ox = 0; ox < filter.taps; ++ox, piece += kCount * kCount) {
-      std::array<std::array<double, kCount>, kCount> means{};  // times the basis, at [ny][nx]
+      // the filter's means with the basis, at [ny][nx]
+      std::array<std::array<double, kCount>, kCount> means{};
       for (std::size_t j = 0; j < points.size(); ++j) {
         std::array<double, kCount> row{};
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -117,7 +119,7 @@ CellFilter of_radial(double radius) {
       }
       integral += means[0][0];
       for (int ny = 0; ny < kCount; ++ny) {
-        for (int nx = 0; nx < kCount && nx + ny <= kMostTotalDegree; ++nx) {
+        for (int nx = 0; nx < kCount && nx + ny <= kMaxTotalDegree; ++nx) {
           for (int b = 0; b <= ny; ++b) {
             for (int a = 0; a <= nx; ++a) {
               piece[b * kCount + a] += means[ny][nx] * legendre[ny][b] * legendre[nx][a];
@@ -135,23 +137,24 @@ CellFilter of_radial(double radius) {
 
 std::span<const std::string_view> raster_filters() {
   static const std::vector<std::string_view> names = [] {
-    std::vector<std::string_view> found;
-    for (const PixelFilter& filter : filters_for(FilterUse::kRaster)) found.push_back(filter.name);
-    return found;
+    std::vector<std::string_view> raster_names;
+    for (const PixelFilter& filter : filters_for(FilterUse::kRaster))
+      raster_names.push_back(filter.name);
+    return raster_names;
   }();
   return names;
 }
 
 const CellFilter* find_cell_filter(std::string_view name) {
-  // Radial ones take a while: each filter is made when it is first asked for.
+  // Radial filters take a while, so each filter is built on first use.
   static std::mutex mutex;
-  static std::map<std::string_view, CellFilter> made;
+  static std::map<std::string_view, CellFilter> filters;
   const std::lock_guard lock(mutex);
-  if (const auto found = made.find(name); found != made.end()) return &found->second;
+  if (const auto known = filters.find(name); known != filters.end()) return &known->second;
   for (const PixelFilter& filter : filters_for(FilterUse::kRaster)) {
     if (filter.name != name) continue;
     CellFilter cells = filter.is_radial ? of_radial(filter.radius) : cell_filter(*filter.kernel);
-    return &made.emplace(filter.name, std::move(cells)).first->second;
+    return &filters.emplace(filter.name, std::move(cells)).first->second;
   }
   return nullptr;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A filter as polynomials on the cells of a grid, the way its moments are weighed.
+// A filter as polynomials on the cells of a grid.
 #pragma once
 
 #include <string_view>
@@ -10,24 +10,24 @@
 
 namespace prefilter {
 
-/// Pixel i along an axis is weighed over the cells first_cell(i) to first_cell(i) + taps - 1, each
-/// by a polynomial in the coordinate from the cell's center, [-1/2, 1/2].
+/// The filter of pixel i along an axis covers the cells first_cell(i) to first_cell(i) + taps - 1.
+/// On each it is a polynomial in the coordinate relative to the cell's center, in [-1/2, 1/2].
 struct CellFilter {
   int cells_per_pixel = 1;
-  /// A coordinate in pixels times cells_per_pixel plus this is one in cells.
+  /// Cell coordinate = pixel coordinate * cells_per_pixel + shift.
   double shift = 0.0;
   int first = 0;
   int taps = 1;
-  int degree = 0;  // 0 to 3, or Kernel::kMostDegree: what rasterize has code for
+  int degree = 0;  // 0 to 3, or Kernel::kMostDegree, for which rasterize is instantiated
   bool is_separable = true;
-  /// Separable: of tap o, the coefficient of power a at [o * (degree + 1) + a].
+  /// If separable: the coefficient of power a of tap o is at [o * (degree + 1) + a].
   std::vector<double> along;
-  /// Else: of taps (ox, oy), that of x^a y^b at
-  /// [((oy * taps + ox) * (degree + 1) + b) * (degree + 1) + a].
+  /// Otherwise: the coefficient of x^a y^b of tap (ox, oy) is at [((oy * taps + ox) * (degree + 1)
+  /// + b) * (degree + 1) + a].
   std::vector<double> table;
 
   int first_cell(int pixel) const { return cells_per_pixel * pixel + first; }
-  /// The pixels that weigh a cell: from the first to the last.
+  /// The first and the last pixel whose filter covers a cell.
   int first_pixel_over(int cell) const { return floor_division(cell - first - taps) + 1; }
   int last_pixel_over(int cell) const { return floor_division(cell - first); }
   double to_cell(double coordinate) const { return coordinate * cells_per_pixel + shift; }
@@ -42,7 +42,7 @@ struct CellFilter {
 
 CellFilter cell_filter(const Kernel& kernel);
 
-/// The filter of a name, or none.
+/// The filter with this name, or null.
 const CellFilter* find_cell_filter(std::string_view name);
 
 }  // namespace prefilter

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Weights of cells under the filter of section 2.2, per pixel.
 #include "prefilter/shapes/raster/cell_pixels.h"
 
 #include <algorithm>
@@ -45,7 +46,7 @@ void CellPixels::begin(int first_row, int end_row, BandValues* values) {
   values_ = values;
 }
 
-// Calls use(values of the pixel, ox, oy) for the pixels that weigh a cell.
+// Calls use(values of the pixel, ox, oy) for the pixels whose filter covers a cell.
 template <typename Use>
 void CellPixels::for_pixels_over(int column, int row, const Use& use) const {
   const int begin_x = std::max(0, filter_.first_pixel_over(column));

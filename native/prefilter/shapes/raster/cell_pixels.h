@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// From values over cells to those of pixels.
+// Distributes cell values to pixels.
 #pragma once
 
 #include <algorithm>
@@ -15,23 +15,23 @@
 
 namespace prefilter {
 
-/// Weighs cells by a filter, for all pixels that have a share in them.
+/// Weights cells by a filter for all pixels whose filter covers them.
 class CellPixels {
  public:
-  /// For images of a width. The filter must outlive this.
+  /// For images of a given width. The filter must outlive this object.
   CellPixels(const CellFilter& filter, int width);
 
-  /// What is added from here on goes to `values`, those of the pixel rows [first_row, end_row).
+  /// Directs further additions to `values`, the pixel rows [first_row, end_row).
   void begin(int first_row, int end_row, BandValues* values);
-  /// The integrals over a cell of a channel's value times x^a y^b, at [a * (degree + 1) + b].
+  /// Adds a cell by the integrals of a channel's value times x^a y^b, at [a * (degree + 1) + b].
   void add(int column, int row, int channel, std::span<const double> moments);
-  /// A cell of which a share has the same color all over.
+  /// Adds a cell of which the fraction `share` has this color everywhere.
   void add_full(int column, int row, double share, std::span<const LinearPowers> color);
-  /// The same of a filter of one cell a pixel: calls use(begin, end, values) for the cells that
-  /// are in the image, with the values of the first one on.
+  /// For filters with one cell per pixel: calls use(begin, end, values) for the cells inside the
+  /// image, with the values from the first cell on.
   template <typename Use>
   void add_row(int begin, int end, int row, const Use& use) const;
-  /// Cells [begin, end) that are one color.
+  /// Adds cells [begin, end) of one constant color.
   void add_constant(int begin, int end, int row, std::span<const double> color);
 
  private:
@@ -40,11 +40,12 @@ class CellPixels {
 
   const CellFilter& filter_;
   int width_;
-  bool is_box_;  // which weighs a cell by 1 in its own pixel
+  bool is_box_;  // one cell per pixel, of weight 1
   int first_row_ = 0;
   int end_row_ = 0;
   BandValues* values_ = nullptr;
-  std::vector<LinearPowers> full_;  // of taps (oy, ox): the integrals of the color's powers
+  // by tap (oy, ox): integrals of the filter times the powers of a linear color
+  std::vector<LinearPowers> full_;
 };
 
 template <typename Use>

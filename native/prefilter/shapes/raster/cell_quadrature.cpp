@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Gauss-Legendre rules in the slabs of CellSlabs.
 #include "prefilter/shapes/raster/cell_quadrature.h"
 
 #include <algorithm>
@@ -11,8 +12,8 @@
 namespace prefilter {
 namespace {
 
-// Parallelograms over which fine stops have a mean are this many to a cell's side; filters weigh
-// one as its center.
+// Parallelograms along a cell's side over which fine stops are averaged. Filters of higher degree
+// evaluate their polynomial at the centers and need more.
 constexpr double kFinePartsOfBox = 4.0;
 constexpr double kFinePartsOfOthers = 8.0;
 
@@ -36,8 +37,8 @@ CellQuadrature::Rule CellQuadrature::rule_of(int points) {
   }
 }
 
-// Along x a filter's power is multiplied with colors of degree 5 at least. Along y the width of a
-// part comes to that, and what integrals along x bring of slanted sides.
+// Along x a filter's power is multiplied by colors, which are integrated exactly up to degree 5.
+// Along y the width of a part and the effect of its slanted sides add to the degree.
 CellQuadrature::CellQuadrature(int degree)
     : degree_(degree),
       along_(rule_of(3 + (degree + 1) / 2)),
@@ -51,8 +52,8 @@ void CellQuadrature::begin(const CellColors& colors) {
   const auto count = static_cast<std::size_t>(degree_ + 1) * (degree_ + 1);
   for (int c = 0; c < channels_; ++c) sums_[c].assign(count, 0.0);
   const bool takes_few = degree_ == 0 && colors.is_gentle();
-  own_along_ = takes_few ? rule_of(2) : along_;
-  own_across_ = takes_few ? rule_of(2) : across_;
+  cell_along_ = takes_few ? rule_of(2) : along_;
+  cell_across_ = takes_few ? rule_of(2) : across_;
 }
 
 void CellQuadrature::add_value(const ChannelValues& value, const Point2& point, double weight) {
@@ -75,10 +76,10 @@ void CellQuadrature::add_value(const ChannelValues& value, const Point2& point, 
 
 void CellQuadrature::add_row(const CellColors& colors, std::uint64_t present, double left,
                              double width, double y, double weight) {
-  for (std::size_t i = 0; i < own_along_.nodes.size(); ++i) {
-    const Point2 point{left + width * own_along_.nodes[i], y};
+  for (std::size_t i = 0; i < cell_along_.nodes.size(); ++i) {
+    const Point2 point{left + width * cell_along_.nodes[i], y};
     add_value(colors.compose_at(present, {point, {}, {}}), point,
-              weight * width * own_along_.weights[i]);
+              weight * width * cell_along_.weights[i]);
   }
 }
 
@@ -86,7 +87,7 @@ void CellQuadrature::set_parts(std::span<const CellLayer> layers, const CellColo
   parts_.clear();
   const auto add = [&](std::uint64_t present) {
     parts_.push_back(
-        {present, colors.is_anything_where(present), !colors.is_constant_where(present)});
+        {present, colors.is_visible_where(present), !colors.is_constant_where(present)});
   };
   add(slabs_.left_side());
   for (const std::uint32_t i : slabs_.order()) {
@@ -103,17 +104,17 @@ void CellQuadrature::add_slab(std::span<const CellLayer> layers, const CellColor
     return;
   }
   const double height = high - low;
-  for (std::size_t j = 0; j < own_across_.nodes.size(); ++j) {
-    const double y = low + height * own_across_.nodes[j];
-    const double weight = height * own_across_.weights[j];
+  for (std::size_t j = 0; j < cell_across_.nodes.size(); ++j) {
+    const double y = low + height * cell_across_.nodes[j];
+    const double weight = height * cell_across_.weights[j];
     double left = -0.5;
     for (std::size_t k = 0; k < parts_.size(); ++k) {
-      // Not left of the arc before, so that the widths add up to 1 in whatever order arcs are.
+      // At least the previous arc's x, so that the widths add up to 1 in any order of the arcs.
       const double right = k < slabs_.order().size()
                                ? std::clamp(slabs_.arc(slabs_.order()[k]).x_at(y), left, 0.5)
                                : 0.5;
       const Part& part = parts_[k];
-      if (right > left && part.is_anything) {
+      if (right > left && part.is_visible) {
         if (part.varies || degree_ > 0) {
           add_row(colors, part.present, left, right - left, y, weight);
         } else {
@@ -136,7 +137,7 @@ void CellQuadrature::add_fine_slab(const CellColors& colors, double low, double 
 }
 
 void CellQuadrature::add_fine_row(const CellColors& colors, double low, double high) {
-  // Where an arc is in the middle of the row, and what it moves along the row's height.
+  // An arc's x at the middle of the row, and its shift over the row's height.
   double left = -0.5;
   double left_shift = 0.0;
   for (std::size_t k = 0; k < parts_.size(); ++k) {
@@ -147,7 +148,7 @@ void CellQuadrature::add_fine_row(const CellColors& colors, double low, double h
       right = std::clamp(arc.x_at(0.5 * (low + high)), left, 0.5);
       right_shift = std::clamp(arc.x_at(high), -0.5, 0.5) - std::clamp(arc.x_at(low), -0.5, 0.5);
     }
-    if (right > left && parts_[k].is_anything) {
+    if (right > left && parts_[k].is_visible) {
       add_parallelograms(colors, parts_[k].present, {left, left_shift}, {right, right_shift}, low,
                          high);
     }
@@ -171,7 +172,7 @@ void CellQuadrature::add_parallelograms(const CellColors& colors, std::uint64_t 
   }
 }
 
-// A slab in which no color varies, where areas are all that is asked for.
+// Adds a slab whose colors are constant from areas. Returns false if a color varies.
 bool CellQuadrature::add_constant_slab(const CellColors& colors, double low, double high) {
   if (std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.varies; })) {
     return false;
@@ -181,11 +182,11 @@ bool CellQuadrature::add_constant_slab(const CellColors& colors, double low, dou
   for (std::size_t k = 0; k < parts_.size(); ++k) {
     double right = 0.5;
     if (k < slabs_.order().size()) {
-      // A parabola's mean is that in the middle, and a twelfth of what it bends.
+      // A parabola's mean is its value at the middle plus a twelfth of its second difference.
       const CellSlabs::Arc& arc = slabs_.arc(slabs_.order()[k]);
       right = std::clamp(arc.x + arc.bend * height * height / 12.0, left, 0.5);
     }
-    if (right > left && parts_[k].is_anything) {
+    if (right > left && parts_[k].is_visible) {
       add_value(colors.compose_at(parts_[k].present, {{left, low}, {}, {}}), {},
                 height * (right - left));
     }
@@ -211,8 +212,8 @@ void CellQuadrature::find_full(const CellColors& colors) {
     }
     return;
   }
-  for (std::size_t j = 0; j < own_along_.nodes.size(); ++j) {
-    add_row(colors, 0, -0.5, 1.0, own_along_.nodes[j] - 0.5, own_along_.weights[j]);
+  for (std::size_t j = 0; j < cell_along_.nodes.size(); ++j) {
+    add_row(colors, 0, -0.5, 1.0, cell_along_.nodes[j] - 0.5, cell_along_.weights[j]);
   }
 }
 

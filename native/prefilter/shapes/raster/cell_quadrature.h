@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What a cell shows of layers whose colors vary, by values at points of the parts into which arcs
-// cut it.
+// Integrals over a cell of layers whose colors vary, by quadrature on the parts between arcs.
 #pragma once
 
 #include <array>
@@ -14,24 +13,23 @@
 
 namespace prefilter {
 
-/// Gauss's rule on each part of a cell between two heights and two arcs. Weights are not below 0,
-/// and those of a cell add up to its area however arcs are rounded: what the cell shows is a mean
-/// of values that the layers show at points. Where stops are fine it is one of means over small
-/// parallelograms, of which a cell has about as many however fine they are.
+/// Gaussian quadrature on each part of a cell between two heights and two arcs. Weights are not
+/// negative and add up to the cell's area however arcs are rounded, so a cell's value is a mean of
+/// composited values at points. If stops are fine, it is a mean of means over small parallelograms,
+/// whose number per cell is independent of how fine the stops are.
 class CellQuadrature {
  public:
-  /// For integrals of values times x^a y^b, of powers up to `degree`.
+  /// For integrals of values times x^a y^b, with powers up to `degree`.
   explicit CellQuadrature(int degree);
 
-  /// Sets the integrals of what a cell shows less the background, its layers seen as `colors` has
-  /// it. `layers` are those that are seen, up to 63 of them. Returns false where that takes more
-  /// than `most_work` steps.
+  /// Computes the integrals of a cell's composited color minus the background. `layers` are the
+  /// visible layers, at most 63. Returns false if that takes more than `most_work` steps.
   bool find(std::span<const CellLayer> layers, const CellColors& colors, std::size_t most_work);
-  /// The same of a cell without arcs.
+  /// Computes the integrals of a cell without arcs.
   void find_full(const CellColors& colors);
-  /// Of a channel, at [a * (degree + 1) + b].
+  /// Integrals of a channel, at [a * (degree + 1) + b].
   std::span<const double> sums(int channel) const { return sums_[channel]; }
-  /// How many steps that took.
+  /// Steps taken.
   std::size_t work() const { return slabs_.work(); }
 
  private:
@@ -39,7 +37,7 @@ class CellQuadrature {
     std::span<const double> nodes;  // on [0, 1]
     std::span<const double> weights;
   };
-  // Where a side of a part is halfway up a row, and what it moves along the row's height.
+  // Side of a part at the middle of a row, and its shift over the row's height.
   struct FineSide {
     double x = 0.0;
     double shift = 0.0;
@@ -61,17 +59,18 @@ class CellQuadrature {
 
   int degree_;
   int channels_ = 0;
-  Rule along_;   // x
-  Rule across_;  // y, of a slab, whose sides may slant
-  // Of the cell in hand.
-  Rule own_along_;
-  Rule own_across_;
+  Rule along_;   // in x
+  Rule across_;  // in y over a slab, whose sides may slant
+  // For the current cell.
+  Rule cell_along_;
+  Rule cell_across_;
   bool has_fine_stops_ = false;
   CellSlabs slabs_;
-  // Between the arcs of a slab: layers, whether they show anything, and whether that varies.
+  // Part of a slab between two arcs: its layers, whether any is visible, and whether the color
+  // varies.
   struct Part {
     std::uint64_t present = 0;
-    bool is_anything = false;
+    bool is_visible = false;
     bool varies = false;
   };
   std::vector<Part> parts_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// A sweep over the heights of all ends and crossings, which are roots of quadratic polynomials.
 #include "prefilter/shapes/raster/cell_slabs.h"
 
 #include <algorithm>
@@ -10,9 +11,9 @@
 namespace prefilter {
 namespace {
 
-// Of few values, most of them in order.
+// Insertion sort, for few values that are almost sorted.
 template <typename T, typename Less>
-void sort_few(std::vector<T>* values, const Less& is_less) {
+void insertion_sort(std::vector<T>* values, const Less& is_less) {
   for (std::size_t i = 1; i < values->size(); ++i) {
     const T value = (*values)[i];
     std::size_t place = i;
@@ -25,7 +26,7 @@ void sort_few(std::vector<T>* values, const Less& is_less) {
 
 }  // namespace
 
-void CellSlabs::take_arcs(std::span<const CellLayer> layers) {
+void CellSlabs::collect_arcs(std::span<const CellLayer> layers) {
   arcs_.clear();
   heights_.assign({-0.5, 0.5});
   for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -40,12 +41,12 @@ void CellSlabs::take_arcs(std::span<const CellLayer> layers) {
   }
 }
 
-// Where the difference of two parabolas is 0.
+// Appends the heights at which two parabolas cross.
 void CellSlabs::add_crossings_of(const Arc& a, const Arc& b) {
   const double low = std::max(a.low.y, b.low.y);
   const double high = std::min(a.high.y, b.high.y);
   const double height = high - low;
-  if (height <= kThinnestSlab) return;
+  if (height <= kMinSlabHeight) return;
   if (std::max(a.low.x, a.high.x) < std::min(b.low.x, b.high.x) ||
       std::max(b.low.x, b.high.x) < std::min(a.low.x, a.high.x)) {
     return;
@@ -75,9 +76,9 @@ void CellSlabs::add_crossings() {
 }
 
 void CellSlabs::sort_heights() {
-  constexpr std::size_t kFew = 24;
-  if (heights_.size() <= kFew) {
-    sort_few(&heights_, [](double a, double b) { return a < b; });
+  constexpr std::size_t kMaxInsertionSort = 24;
+  if (heights_.size() <= kMaxInsertionSort) {
+    insertion_sort(&heights_, [](double a, double b) { return a < b; });
   } else {
     std::sort(heights_.begin(), heights_.end());
   }
@@ -92,7 +93,8 @@ void CellSlabs::begin_slab(std::span<const CellLayer> layers, double middle) {
     order_.push_back(i);
   }
   work_ += 1 + order_.size();
-  sort_few(&order_, [&](std::uint32_t a, std::uint32_t b) { return arcs_[a].x < arcs_[b].x; });
+  insertion_sort(&order_,
+                 [&](std::uint32_t a, std::uint32_t b) { return arcs_[a].x < arcs_[b].x; });
   left_side_ = 0;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     windings_[i] = layers[i].base;

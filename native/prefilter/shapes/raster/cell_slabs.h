@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A cell cut into slabs, between which no arc ends and no two cross.
+// Cuts a cell into slabs in which no arc ends and no two arcs cross.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace prefilter {
 
-/// The arcs that cross a cell, as parabolas, and the heights at which one of them ends or two of
-/// them cross. In each slab between two heights the arcs have one order from left to right.
+/// The arcs that cross a cell, as parabolas, and the heights at which an arc ends or two arcs
+/// cross. Within each slab between two heights the arcs have a fixed order from left to right.
 class CellSlabs {
  public:
   struct Arc {
@@ -21,34 +21,33 @@ class CellSlabs {
     Point2 high;
     double slope = 0.0;
     double bend = 0.0;
-    double x = 0.0;  // in the middle of the slab
+    double x = 0.0;  // at the middle of the slab
     std::uint32_t layer = 0;
     std::int32_t winding = 0;
 
     double x_at(double y) const { return low.x + (y - low.y) * (slope + bend * (y - high.y)); }
   };
 
-  /// Calls use_slab(low, high) for the slabs, from the lowest, after order() and the layers on the
-  /// left side are those of the slab. Returns false, having left off, where that takes more than
-  /// `most_work` steps. `layers` are up to 63.
+  /// Calls use_slab(low, high) for each slab, from the lowest, with order() and left_side() set for
+  /// it. Stops and returns false after `most_work` steps. At most 63 layers.
   template <typename UseSlab>
   bool visit(std::span<const CellLayer> layers, std::size_t most_work, const UseSlab& use_slab);
 
-  /// The arcs of the slab from left to right.
+  /// The arcs of the slab, from left to right.
   std::span<const std::uint32_t> order() const { return order_; }
   const Arc& arc(std::uint32_t index) const { return arcs_[index]; }
-  /// A bit for each layer that is present at the left side of the slab.
+  /// Bit mask of the layers present at the left side of the slab.
   std::uint64_t left_side() const { return left_side_; }
-  /// The layers right of an arc, from those to its left. Arcs must be crossed in order.
+  /// The layers to the right of an arc, given those to its left. Arcs must be crossed in order.
   std::uint64_t cross(const Arc& arc, std::span<const CellLayer> layers, std::uint64_t present);
   /// Steps taken so far.
   std::size_t work() const { return work_; }
 
  private:
-  // Slabs thinner than this are left out.
-  static constexpr double kThinnestSlab = 1e-12;
+  // Slabs thinner than this fraction of a cell are skipped.
+  static constexpr double kMinSlabHeight = 1e-12;
 
-  void take_arcs(std::span<const CellLayer> layers);
+  void collect_arcs(std::span<const CellLayer> layers);
   void add_crossings();
   void add_crossings_of(const Arc& a, const Arc& b);
   void sort_heights();
@@ -66,14 +65,14 @@ template <typename UseSlab>
 bool CellSlabs::visit(std::span<const CellLayer> layers, std::size_t most_work,
                       const UseSlab& use_slab) {
   windings_.resize(layers.size());
-  take_arcs(layers);
+  collect_arcs(layers);
   work_ = arcs_.size() * arcs_.size() / 4;
   if (work_ > most_work) return false;
   add_crossings();
   sort_heights();
   double low = -0.5;
   for (const double height : heights_) {
-    if (height - low <= kThinnestSlab) continue;
+    if (height - low <= kMinSlabHeight) continue;
     begin_slab(layers, 0.5 * (low + height));
     use_slab(low, height);
     low = height;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// A plane sweep in one cell. Crossings of lines are exact; crossings of curves are found by
+// comparing both along y.
 #include "prefilter/shapes/raster/cell_sweep.h"
 
 #include <algorithm>
@@ -10,12 +12,12 @@
 namespace prefilter {
 namespace {
 
-// Arcs closer than this, in cells, run along each other: what lies between them does not show.
-constexpr double kTogether = 1e-11;
-// Slabs thinner than this are left out.
-constexpr double kThinnest = 1e-12;
-// How often an interval is halved in which two curves come close to each other.
-constexpr int kMostHalves = 10;
+// Arcs closer than this, in cells, count as overlapping: the area between them is invisible.
+constexpr double kMinArcDistance = 1e-11;
+// Slabs thinner than this, in cells, are skipped.
+constexpr double kMinSweptSlabHeight = 1e-12;
+// Largest number of bisections of an interval in which two curves approach each other.
+constexpr int kMaxBisections = 10;
 
 bool is_line(const StackArc& arc) { return arc.curve == StackArc::kLine; }
 
@@ -47,7 +49,7 @@ double CellSweep::x_at(const SweptArc& swept, double y) const {
   return is_line(arc) ? arc.low.x + (y - arc.low.y) * swept.slope : x_at(arc, y);
 }
 
-void CellSweep::take_arcs(std::span<const CellLayer> layers) {
+void CellSweep::collect_arcs(std::span<const CellLayer> layers) {
   arcs_.clear();
   heights_.assign({-0.5, 0.5});
   for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -66,12 +68,12 @@ double CellSweep::root_between(const SweptArc& a, const SweptArc& b, double low,
   const bool are_lines = is_line(*a.arc) && is_line(*b.arc);
   double y = low + (high - low) * (at_low / (at_low - at_high));
   if (are_lines) return y;
-  // Regula falsi in the Illinois way, and halves.
-  for (int step = 0; step < 60 && high - low > kThinnest; ++step) {
+  // Regula falsi (Illinois variant), with a bisection every third step.
+  for (int step = 0; step < 60 && high - low > kMinSweptSlabHeight; ++step) {
     y = step % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * (at_low / (at_low - at_high));
     if (!(y > low && y < high)) y = 0.5 * (low + high);
     const double at = x_at(a, y) - x_at(b, y);
-    if (std::fabs(at) <= kTogether) break;
+    if (std::fabs(at) <= kMinArcDistance) break;
     if ((at < 0.0) == (at_low < 0.0)) {
       low = y;
       at_low = at;
@@ -87,19 +89,19 @@ void CellSweep::add_roots(const SweptArc& a, const SweptArc& b, double low, doub
                           double high, double at_high, int depth) {
   ++work_;
   if ((at_low < 0.0) != (at_high < 0.0)) {
-    if (std::fabs(at_low) > kTogether || std::fabs(at_high) > kTogether) {
+    if (std::fabs(at_low) > kMinArcDistance || std::fabs(at_high) > kMinArcDistance) {
       heights_.push_back(root_between(a, b, low, at_low, high, at_high));
     }
     return;
   }
   if (depth == 0 || (is_line(*a.arc) && is_line(*b.arc))) return;
-  // Curves may cross twice, where the parabola through three places says they come that close.
+  // Curves may cross twice. The parabola through three points tells whether they come that close.
   const double middle = 0.5 * (low + high);
   const double at = x_at(a, middle) - x_at(b, middle);
   if ((at < 0.0) == (at_low < 0.0)) {
     const double nearest = std::min({std::fabs(at_low), std::fabs(at), std::fabs(at_high)});
     const double bend = std::fabs(at_low - 2.0 * at + at_high);
-    if (nearest > bend || bend <= kTogether) return;
+    if (nearest > bend || bend <= kMinArcDistance) return;
   }
   add_roots(a, b, low, at_low, middle, at, depth - 1);
   add_roots(a, b, middle, at, high, at_high, depth - 1);
@@ -110,13 +112,13 @@ void CellSweep::add_crossings_of(const SweptArc& a, const SweptArc& b) {
   const StackArc& second = *b.arc;
   const double low = std::max(first.low.y, second.low.y);
   const double high = std::min(first.high.y, second.high.y);
-  if (high - low <= kThinnest) return;
+  if (high - low <= kMinSweptSlabHeight) return;
   if (std::max(first.low.x, first.high.x) < std::min(second.low.x, second.high.x) ||
       std::max(second.low.x, second.high.x) < std::min(first.low.x, first.high.x)) {
     return;
   }
   add_roots(a, b, low, x_at(a, low) - x_at(b, low), high, x_at(a, high) - x_at(b, high),
-            kMostHalves);
+            kMaxBisections);
 }
 
 void CellSweep::add_crossings() {
@@ -171,13 +173,13 @@ void CellSweep::sweep_slab(std::span<const CellLayer> layers, double low, double
     return arcs_[a].x < arcs_[b].x || (arcs_[a].x == arcs_[b].x && a < b);
   });
   set_left_side(layers, middle);
-  std::uint32_t state = states_.number_of(present_);
+  std::uint32_t state = states_.index_of(present_);
   add_part(SweptPart::kLeftSide, low, high, kNothing, state);
   for (std::size_t i = 0; i < order_.size();) {
     const std::uint32_t first = order_[i];
-    const double end = arcs_[first].x + kTogether;
+    const double end = arcs_[first].x + kMinArcDistance;
     while (i < order_.size() && arcs_[order_[i]].x <= end) cross(arcs_[order_[i++]], layers);
-    const std::uint32_t next = states_.number_of(present_);
+    const std::uint32_t next = states_.index_of(present_);
     if (next != state) add_part(first, low, high, state, next);
     state = next;
   }
@@ -189,16 +191,16 @@ bool CellSweep::sweep(int column, int row, std::span<const CellLayer> layers,
   parts_.clear();
   side_part_ = kNoPart;
   states_.clear();
-  states_.number_of(kNothingKey);
+  states_.index_of(kNothingKey);
   windings_.resize(layers.size());
-  take_arcs(layers);
+  collect_arcs(layers);
   work_ = arcs_.size() * arcs_.size() / 4;
   if (work_ > most_work) return false;
   add_crossings();
   std::sort(heights_.begin(), heights_.end());
   double low = -0.5;
   for (const double height : heights_) {
-    if (height - low <= kThinnest) continue;
+    if (height - low <= kMinSweptSlabHeight) continue;
     sweep_slab(layers, low, height);
     low = height;
     if (work_ > most_work) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Code for each number of channels, two of which are worked out at once.
+// Code specialized for each number of channels, in pairs of channels.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace prefilter {
 
-/// Calls use with std::integral_constant<int, channels>, and returns what that does.
+/// Returns use(std::integral_constant<int, channels>).
 template <typename Use>
 auto with_channel_count(int channels, const Use& use) {
   static_assert(kMaxChannels == 4);
@@ -23,7 +23,7 @@ auto with_channel_count(int channels, const Use& use) {
   return use(std::integral_constant<int, 4>());
 }
 
-/// The channels of a value, of which one beyond C is not used.
+/// The channels of a value in pairs; an odd last one is paired with an unused value.
 template <int C>
 using ChannelPairs = std::array<DoublePair, (C + 1) / 2>;
 
@@ -34,7 +34,7 @@ ChannelPairs<C> channel_pairs(const ChannelValues& values) {
   return pairs;
 }
 
-/// Adds value_of(i), the pair i of C channels, to a pixel.
+/// Adds value_of(i), pair i of C channels, to a pixel.
 template <int C, typename ValueOf>
 void add_pairs(const ValueOf& value_of, double* pixel) {
   for (std::size_t i = 0; i < C / 2; ++i) {

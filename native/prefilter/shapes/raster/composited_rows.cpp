@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Composites layers by pixel coverage, and tracks in bit masks where that would not be exact.
 #include "prefilter/shapes/raster/composited_rows.h"
 
 #include <algorithm>
@@ -13,23 +14,26 @@
 namespace prefilter {
 namespace {
 
-// What a pixel is covered by less than this, or lacks up to being covered, does not show in a
-// float.
-constexpr std::uint32_t kLeastSteps = 1U << (kBoxBits - 24);
+// Coverage below this, or that close to 1, does not change a float.
+constexpr std::uint32_t kMinCoverageSteps = 1U << (kBoxBits - 24);
 constexpr std::uint32_t kFullSteps = 1U << kBoxBits;
 
-// A color that changes by less than this over a pixel is off by an eighth of it at most where it is
-// told by the pixel's mean: about an eighth of 1/255.
-constexpr double kFlatVariation = 1.0 / 256.0;
-// The mean of a product of two colors that change over a pixel is off from the product of their
-// means by a twelfth of the product of their changes at most.
-constexpr double kMostProduct = 12.0 / 2048.0;
+// For a color that changes by less than this over a pixel, replacing it by its mean over the pixel
+// causes an error of at most an eighth of the change, and thus of about an eighth of 1/255.
+constexpr double kMaxFlatVariation = 1.0 / 256.0;
+// The mean of a product of two colors that vary over a pixel differs from the product of their
+// means by at most a twelfth of the product of their changes. This bound keeps it below 1/2048.
+constexpr double kMaxVariationProduct = 12.0 / 2048.0;
 
-// Modulo 2^32: what is a little below 0 is none, too.
-bool is_none(std::uint32_t steps) { return steps + (kLeastSteps - 1) < 2 * kLeastSteps - 1; }
-bool is_full(std::uint32_t steps) { return steps - (kFullSteps - kLeastSteps) <= 2 * kLeastSteps; }
+// Modulo 2^32, values slightly below 0 count as none, too.
+bool is_none(std::uint32_t steps) {
+  return steps + (kMinCoverageSteps - 1) < 2 * kMinCoverageSteps - 1;
+}
+bool is_full(std::uint32_t steps) {
+  return steps - (kFullSteps - kMinCoverageSteps) <= 2 * kMinCoverageSteps;
+}
 
-// Which of 16 pixels are covered at all, and which wholly.
+// Which of 16 pixels are covered at all, and which fully.
 struct CoveredBits {
   unsigned any = 0;
   unsigned full = 0;
@@ -47,13 +51,13 @@ CoveredBits covered_bits(const std::uint32_t* steps) {
 template <int kChannels>
 void put_mean(const double* color, double share, double* out) {
   const double opacity = kChannels < kMaxChannels ? 1.0 : color[kMaxChannels - 1];
-  const double passing = 1.0 - share * opacity;
-  for (int c = 0; c < kChannels; ++c) out[c] = passing * out[c] + share * color[c];
+  const double transmittance = 1.0 - share * opacity;
+  for (int c = 0; c < kChannels; ++c) out[c] = transmittance * out[c] + share * color[c];
 }
 
 template <int kChannels>
-void put_color(const ChannelValues& color, double share, double passing, double* out) {
-  for (int c = 0; c < kChannels; ++c) out[c] = passing * out[c] + share * color[c];
+void put_color(const ChannelValues& color, double share, double transmittance, double* out) {
+  for (int c = 0; c < kChannels; ++c) out[c] = transmittance * out[c] + share * color[c];
 }
 
 }  // namespace
@@ -62,11 +66,11 @@ CompositedRows::CompositedRows(const LayerStack& stack, int width, int channels)
     : stack_(stack), channels_(channels), width_(width), blocks_((width - 1) / kBlock + 1) {}
 
 template <int kChannels>
-void CompositedRows::put_block(const Coat& coat, int row, int x, int count,
+void CompositedRows::put_block(const PreparedLayer& prepared, int row, int x, int count,
                                const std::uint32_t* steps, BandValues* values) {
   BlockBits& bits = this->bits(row)[x / kBlock];
   const unsigned pixels = kAll >> (kBlock - count);
-  if (!coat.winds_once) {
+  if (!prepared.winds_once) {
     bits.marked = static_cast<std::uint16_t>(bits.marked | pixels);
     return;
   }
@@ -74,13 +78,13 @@ void CompositedRows::put_block(const Coat& coat, int row, int x, int count,
   covered.any &= pixels;
   covered.full &= pixels;
   if (covered.any == 0) return;
-  cover(coat, covered.any, covered.full, &bits);
+  cover(prepared, covered.any, covered.full, &bits);
   double* out = values->pixels(row - first_row_, x, x + count);
-  if (coat.means != nullptr) {
+  if (prepared.means != nullptr) {
     const int first = std::countr_zero(covered.any);
     const int last = static_cast<int>(std::bit_width(covered.any)) - 1;
     run_.resize(static_cast<std::size_t>(last + 1 - first) * kChannels);
-    coat.means->find(x + first, x + last + 1, row, run_.data());
+    prepared.means->find(x + first, x + last + 1, row, run_.data());
     for (unsigned left = covered.any; left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
       const bool is_full = (covered.full >> i & 1) != 0;
@@ -94,33 +98,33 @@ void CompositedRows::put_block(const Coat& coat, int row, int x, int count,
     const int i = std::countr_zero(left);
     const bool is_full = (covered.full >> i & 1) != 0;
     const double share = is_full ? 1.0 : static_cast<std::int32_t>(steps[i]) * kBoxUnit;
-    put_color<kChannels>(coat.color, share, 1.0 - share * coat.opacity,
+    put_color<kChannels>(prepared.color, share, 1.0 - share * prepared.opacity,
                          out + static_cast<std::ptrdiff_t>(i) * kChannels);
   }
 }
 
 template <int kChannels>
-void CompositedRows::put_run(const Coat& coat, int row, int begin, int end, std::uint32_t steps,
-                             BandValues* values) {
+void CompositedRows::put_run(const PreparedLayer& prepared, int row, int begin, int end,
+                             std::uint32_t steps, BandValues* values) {
   double share = 1.0;
-  if (coat.winds_once) {
-    // Below or above a level edge it is a part.
+  if (prepared.winds_once) {
+    // Next to a horizontal edge a run is partially covered.
     if (is_none(steps)) return;
     if (!is_full(steps)) share = static_cast<std::int32_t>(steps) * kBoxUnit;
   } else {
-    // Where no outline passes, all is wound around as often.
+    // In a run no outline passes, so the winding number is constant.
     const std::int32_t winding = static_cast<std::int32_t>(steps + kFullSteps / 2) >> kBoxBits;
-    if (!is_filled(winding, coat.fill_rule)) return;
+    if (!is_filled(winding, prepared.fill_rule)) return;
   }
-  // A constant color that covers pixels wholly, and lets something pass, changes no bits.
-  if (coat.means != nullptr || share < 1.0 || coat.opacity >= 1.0) {
+  // A translucent constant color that fully covers pixels changes no bits.
+  if (prepared.means != nullptr || share < 1.0 || prepared.opacity >= 1.0) {
     for_blocks(row, begin, end, [&](BlockBits* bits, unsigned pixels) {
-      cover(coat, pixels, share < 1.0 ? 0 : pixels, bits);
+      cover(prepared, pixels, share < 1.0 ? 0 : pixels, bits);
     });
   }
-  if (coat.means != nullptr) {
+  if (prepared.means != nullptr) {
     run_.resize(static_cast<std::size_t>(end - begin) * kChannels);
-    coat.means->find(begin, end, row, run_.data());
+    prepared.means->find(begin, end, row, run_.data());
     double* out = values->pixels(row - first_row_, begin, end);
     for (int i = 0; i < (end - begin) * kChannels; i += kChannels) {
       put_mean<kChannels>(run_.data() + i, share, out + i);
@@ -128,14 +132,14 @@ void CompositedRows::put_run(const Coat& coat, int row, int begin, int end, std:
     return;
   }
   double* out = values->pixels(row - first_row_, begin, end);
-  const double passing = 1.0 - share * coat.opacity;
+  const double transmittance = 1.0 - share * prepared.opacity;
   for (int x = begin; x < end; ++x, out += kChannels) {
-    put_color<kChannels>(coat.color, share, passing, out);
+    put_color<kChannels>(prepared.color, share, transmittance, out);
   }
 }
 
-// Marks what level lines pass, which make no difference from pixel to pixel.
-void CompositedRows::mark_level_lines(const EdgeList& edges) {
+// Marks the pixels along horizontal lines, which cause no differences along a row.
+void CompositedRows::mark_horizontal_lines(const EdgeList& edges) {
   edges.for_segments_between(first_row_, end_row_, [&](std::span<const Point2> controls, double) {
     const Point2& first = controls.front();
     const Point2& last = controls.back();
@@ -153,18 +157,18 @@ void CompositedRows::mark_level_lines(const EdgeList& edges) {
 }
 
 template <int kChannels>
-void CompositedRows::put_layer(const Coat& coat, BandValues* values) {
+void CompositedRows::put_layer(const PreparedLayer& prepared, BandValues* values) {
   coverage_.take(
       [&](int row, int x, int count, const std::uint32_t* steps) {
-        put_block<kChannels>(coat, row, x, count, steps, values);
+        put_block<kChannels>(prepared, row, x, count, steps, values);
       },
       [&](int row, int begin, int end, std::uint32_t steps) {
-        put_run<kChannels>(coat, row, begin, end, steps, values);
+        put_run<kChannels>(prepared, row, begin, end, steps, values);
       });
 }
 
-void CompositedRows::put_over(int first_row, int end_row, const ChannelValues& background,
-                              BandValues* values) {
+void CompositedRows::composite_over(int first_row, int end_row, const ChannelValues& background,
+                                    BandValues* values) {
   first_row_ = first_row;
   end_row_ = end_row;
   bits_.assign(static_cast<std::size_t>(end_row - first_row) * blocks_, {});
@@ -183,10 +187,10 @@ void CompositedRows::put_over(int first_row, int end_row, const ChannelValues& b
         add_cutter(stack_.layers[i + 1].edges);
       }
       coverage_.add(layer.edges);
-      put_layer_of_channels(coat_of(layer, steepest_below), values);
-      if (!layer.winds_once) mark_level_lines(layer.edges);
+      put_layer_by_channels(prepare(layer, steepest_below), values);
+      if (!layer.winds_once) mark_horizontal_lines(layer.edges);
     }
-    if (has_cutter_) forget_cutter();
+    if (has_cutter_) clear_cutter();
     if (layer.paint->kind != Paint::Kind::kConstant) {
       steepest_below = std::max(steepest_below, variation_per_pixel(*layer.paint).value);
     }
@@ -194,41 +198,43 @@ void CompositedRows::put_over(int first_row, int end_row, const ChannelValues& b
   reset_marked(background, values);
 }
 
-CompositedRows::Coat CompositedRows::coat_of(const StackLayer& layer, double steepest_below) {
+CompositedRows::PreparedLayer CompositedRows::prepare(const StackLayer& layer,
+                                                      double steepest_below) {
   const Paint& paint = *layer.paint;
-  Coat coat{paint.constant, 1.0 - most_passing(paint, channels_), layer.winds_once,
-            layer.fill_rule};
+  PreparedLayer prepared{paint.constant, 1.0 - max_transmittance(paint, channels_),
+                         layer.winds_once, layer.fill_rule};
   if (paint.kind == Paint::Kind::kConstant) {
-    if (channels_ == kMaxChannels) coat.opacity = paint.constant[kMaxChannels - 1];
-    return coat;
+    if (channels_ == kMaxChannels) prepared.opacity = paint.constant[kMaxChannels - 1];
+    return prepared;
   }
-  coat.means = &means_.emplace(paint);
+  prepared.means = &means_.emplace(paint);
   const PaintVariation variation = variation_per_pixel(paint);
-  coat.is_steep = variation.value > kFlatVariation;
-  coat.is_veil = variation.alpha > kFlatVariation;
-  coat.marks_steep = variation.alpha > 0.0 && variation.alpha * steepest_below > kMostProduct;
-  return coat;
+  prepared.is_steep = variation.value > kMaxFlatVariation;
+  prepared.has_varying_alpha = variation.alpha > kMaxFlatVariation;
+  prepared.marks_steep =
+      variation.alpha > 0.0 && variation.alpha * steepest_below > kMaxVariationProduct;
+  return prepared;
 }
 
-void CompositedRows::put_layer_of_channels(const Coat& coat, BandValues* values) {
+void CompositedRows::put_layer_by_channels(const PreparedLayer& prepared, BandValues* values) {
   static_assert(kMaxChannels == 4);
   switch (channels_) {
     case 1:
-      put_layer<1>(coat, values);
+      put_layer<1>(prepared, values);
       break;
     case 2:
-      put_layer<2>(coat, values);
+      put_layer<2>(prepared, values);
       break;
     case 3:
-      put_layer<3>(coat, values);
+      put_layer<3>(prepared, values);
       break;
     default:
-      put_layer<4>(coat, values);
+      put_layer<4>(prepared, values);
       break;
   }
 }
 
-// Curves wind round whole pixels or they pass them.
+// Marks the pixels that a cutter passes: their winding number is not a whole number.
 void CompositedRows::add_cutter(const EdgeList& edges) {
   has_cutter_ = true;
   coverage_.add(edges);
@@ -245,23 +251,24 @@ void CompositedRows::add_cutter(const EdgeList& edges) {
       [](int, int, int, std::uint32_t) {});
 }
 
-void CompositedRows::forget_cutter() {
+void CompositedRows::clear_cutter() {
   has_cutter_ = false;
   for (BlockBits& bits : bits_) bits.cut = 0;
 }
 
-// A layer comes over pixels of a block, some of which it covers wholly.
-void CompositedRows::cover(const Coat& coat, unsigned any, unsigned full, BlockBits* bits) {
+// Updates the bits of a block for a layer that covers the pixels `any`, and `full` of them fully.
+void CompositedRows::cover(const PreparedLayer& prepared, unsigned any, unsigned full,
+                           BlockBits* bits) {
   const unsigned in_part = any & ~full;
-  const unsigned hidden = coat.opacity >= 1.0 ? full : 0;
+  const unsigned hidden = prepared.opacity >= 1.0 ? full : 0;
   unsigned rough = in_part & (bits->in_part | bits->steep);
   rough |= any & bits->cut;
-  if (coat.is_steep) rough |= in_part;
-  if (coat.is_veil) rough |= any & bits->in_part;
-  if (coat.marks_steep) rough |= any & bits->steep;
+  if (prepared.is_steep) rough |= in_part;
+  if (prepared.has_varying_alpha) rough |= any & bits->in_part;
+  if (prepared.marks_steep) rough |= any & bits->steep;
   bits->marked = static_cast<std::uint16_t>((bits->marked & ~hidden) | rough);
   bits->in_part = static_cast<std::uint16_t>((bits->in_part & ~hidden) | in_part);
-  bits->steep = static_cast<std::uint16_t>((bits->steep & ~hidden) | (coat.is_steep ? any : 0));
+  bits->steep = static_cast<std::uint16_t>((bits->steep & ~hidden) | (prepared.is_steep ? any : 0));
 }
 
 void CompositedRows::reset_marked(const ChannelValues& background, BandValues* values) {
@@ -280,7 +287,7 @@ void CompositedRows::reset_marked(const ChannelValues& background, BandValues* v
 }
 
 bool CompositedRows::has_marks_within(const Point2& a, const Point2& b) const {
-  // A little more, as places are rounded.
+  // Covers rounding of the coordinates, in pixels.
   constexpr double kSlack = 1e-6;
   const auto place = [](double at, double most) {
     return static_cast<int>(std::floor(std::clamp(at, 0.0, most)));

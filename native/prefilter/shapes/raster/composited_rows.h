@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Layers put over each other by how much they cover of each pixel, as far as that says what shows.
+// Compositing of layers by their coverage of each pixel, where that is exact.
 #pragma once
 
 #include <algorithm>
@@ -16,49 +16,50 @@
 
 namespace prefilter {
 
-/// Under the box filter a pixel that one layer covers in part, and all others wholly or not at all,
-/// is a mean of two colors. Where outlines of several layers meet in a pixel, or one that may wind
-/// more than once passes it, it is marked, for others to find what shows there; so is one where a
-/// color that varies meets an outline, a kink or a jump of its own, or steep colors below it. An
-/// opaque layer that covers a pixel takes the mark away.
+/// Under the box filter, a pixel that one layer covers partially and all others fully or not at all
+/// is a mean of two colors. A pixel is marked for a more exact method if the outlines of several
+/// layers pass it, if an outline passes it that may wind more than once, or if a varying color
+/// meets an outline, a kink or jump of its own, or steep colors below it. An opaque layer that
+/// fully covers a pixel removes the mark.
 class CompositedRows {
  public:
-  /// Of a stack, which must outlive it.
+  /// The stack must outlive this object.
   CompositedRows(const LayerStack& stack, int width, int channels);
 
-  /// Puts the layers over what `values`, those of the pixel rows [first_row, end_row), hold; pixels
-  /// with a mark are left as `background`.
-  void put_over(int first_row, int end_row, const ChannelValues& background, BandValues* values);
+  /// Composites the layers over `values`, the pixel rows [first_row, end_row). Marked pixels are
+  /// reset to `background`.
+  void composite_over(int first_row, int end_row, const ChannelValues& background,
+                      BandValues* values);
 
   bool has_marks(int row) const { return has_marks_[row - first_row_] != 0; }
-  /// Whether there is one in a pixel that the box between two points meets, in the band.
+  /// Whether a marked pixel in the band overlaps the box between two points.
   bool has_marks_within(const Point2& a, const Point2& b) const;
-  /// The columns with a mark in a row.
+  /// Opens the marked columns of a row.
   void marked_columns(int row, OpenColumns* columns) const;
 
  private:
   static constexpr int kBlock = 16;
   static constexpr unsigned kAll = (1U << kBlock) - 1;
 
-  /// Bits of the pixels of a block that some layer covers in part, of those with a mark, of those
-  /// with colors that vary, and of those that the cutter of the layer in hand passes.
+  /// Bits of a block's pixels: partially covered by some layer, marked, with varying colors, and
+  /// passed by the cutter of the current layer.
   struct BlockBits {
     std::uint16_t in_part = 0;
     std::uint16_t marked = 0;
     std::uint16_t steep = 0;
     std::uint16_t cut = 0;
   };
-  /// A layer's color, ready to be put over others.
-  struct Coat {
+  /// The color of a layer, prepared for compositing.
+  struct PreparedLayer {
     ChannelValues color;
     double opacity = 1.0;
     bool winds_once = true;
     FillRule fill_rule = FillRule::kNonzero;
-    /// Of a color that varies.
+    /// for a varying color
     const PaintMeans* means = nullptr;
-    bool is_steep = false;     // so that it counts which part of a pixel is covered
-    bool is_veil = false;      // so that it counts where in a pixel it is how opaque
-    bool marks_steep = false;  // also of what it covers all over
+    bool is_steep = false;           // matters which part of a pixel it covers
+    bool has_varying_alpha = false;  // its alpha varies within partially covered pixels
+    bool marks_steep = false;        // marks pixels over steep colors, even if fully covered
   };
 
   BlockBits* bits(int row) {
@@ -67,22 +68,22 @@ class CompositedRows {
   const BlockBits* bits(int row) const {
     return bits_.data() + static_cast<std::size_t>(row - first_row_) * blocks_;
   }
-  Coat coat_of(const StackLayer& layer, double steepest_below);
-  void put_layer_of_channels(const Coat& coat, BandValues* values);
+  PreparedLayer prepare(const StackLayer& layer, double steepest_below);
+  void put_layer_by_channels(const PreparedLayer& prepared, BandValues* values);
   void add_cutter(const EdgeList& edges);
-  void forget_cutter();
-  static void cover(const Coat& coat, unsigned any, unsigned full, BlockBits* bits);
+  void clear_cutter();
+  static void cover(const PreparedLayer& prepared, unsigned any, unsigned full, BlockBits* bits);
   template <int kChannels>
-  void put_layer(const Coat& coat, BandValues* values);
+  void put_layer(const PreparedLayer& prepared, BandValues* values);
   template <int kChannels>
-  void put_block(const Coat& coat, int row, int x, int count, const std::uint32_t* steps,
-                 BandValues* values);
+  void put_block(const PreparedLayer& prepared, int row, int x, int count,
+                 const std::uint32_t* steps, BandValues* values);
   template <int kChannels>
-  void put_run(const Coat& coat, int row, int begin, int end, std::uint32_t steps,
+  void put_run(const PreparedLayer& prepared, int row, int begin, int end, std::uint32_t steps,
                BandValues* values);
-  void mark_level_lines(const EdgeList& edges);
-  // Calls use(BlockBits*, pixels) for the blocks of the pixels [begin, end) of a row, with bits of
-  // those.
+  void mark_horizontal_lines(const EdgeList& edges);
+  // Calls use(BlockBits*, pixels) for the blocks that contain the pixels [begin, end) of a row,
+  // with a bit mask of these pixels.
   template <typename Use>
   void for_blocks(int row, int begin, int end, const Use& use) {
     for (int block = begin / kBlock; block * kBlock < end; ++block) {
@@ -103,7 +104,7 @@ class CompositedRows {
   std::vector<BlockBits> bits_;
   std::vector<std::uint8_t> has_marks_;
   bool has_cutter_ = false;
-  std::optional<PaintMeans> means_;  // of the layer in hand
+  std::optional<PaintMeans> means_;  // of the current layer
   std::vector<double> run_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Rows of a shape's filtered coverage, held as differences from pixel to pixel.
+// Rows of a shape's filtered coverage, stored as differences between adjacent pixels.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 
 namespace prefilter {
 
-/// Coverage is added up in fractions of 2^-kCoverageBits: whole numbers, so a run of pixels that
-/// nothing changes costs its two ends, and behind the last change there is exactly nothing left.
+/// Coverage is accumulated as integer multiples of 2^-kCoverageBits. A run of constant coverage
+/// costs only its two ends, and behind the last change the sum is exactly 0.
 inline constexpr int kCoverageBits = 52;
 
 class CoverageRows {
  public:
-  /// The rows [0, rows) of `width` pixels, all 0.
+  /// Sets the rows [0, rows) of `width` pixels to 0.
   void reset(int width, int rows) {
     width_ = width;
     blocks_ = width / kBlock + 1;
@@ -25,13 +25,14 @@ class CoverageRows {
     is_changed_.assign(static_cast<std::size_t>(blocks_) * rows, 0);
     is_row_changed_.assign(rows, 0);
   }
-  /// From pixel x on a row is higher by this; x is up to the width.
+  /// Raises a row by `step` from pixel x on; x is at most the width.
   void add_step(int row, int x, std::int64_t step) {
     steps_[stride_ * row + x] += step;
     is_changed_[static_cast<std::size_t>(blocks_) * row + x / kBlock] = 1;
     is_row_changed_[row] = 1;
   }
-  /// The steps at the pixels [begin, end) of a row, to be added to; end is up to the width + 1.
+  /// Differences at the pixels [begin, end) of a row, to be added to; `end` is at most the width +
+  /// 1.
   std::int64_t* change(int row, int begin, int end) {
     std::uint8_t* changed = is_changed_.data() + static_cast<std::size_t>(blocks_) * row;
     for (int block = begin / kBlock; block <= (end - 1) / kBlock; ++block) changed[block] = 1;
@@ -40,8 +41,8 @@ class CoverageRows {
   }
   bool is_changed(int row) const { return is_row_changed_[row] != 0; }
 
-  /// Calls one(x, coverage) for pixels of which some differ, and run(begin, end, coverage) for
-  /// those that are alike, from left to right; then the row is 0 again.
+  /// Calls one(x, coverage) for pixels in changed blocks, and run(begin, end, coverage) for runs of
+  /// equal coverage, from left to right. Resets the row to 0.
   template <typename One, typename Run>
   void take(int row, const One& one, const Run& run);
 

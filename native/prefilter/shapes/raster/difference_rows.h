@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Rows of box-filtered coverage, as differences from pixel to pixel in whole numbers.
+// Rows of box-filtered coverage, stored as integer differences between adjacent pixels.
 #pragma once
 
 #include <algorithm>
@@ -13,52 +13,53 @@
 
 namespace prefilter {
 
-/// Coverage is counted in fractions of 2^-kBoxBits, modulo 2^32: up to 31 windings. Whole numbers
-/// add up to the same in any order, edges that two shapes share cancel, and behind the last edge of
-/// a closed contour exactly nothing is left.
+/// Coverage is counted in units of 2^-kBoxBits, modulo 2^32, which allows up to 31 windings.
+/// Integers add up to the same in any order, edges shared by two shapes cancel, and behind the last
+/// edge of a closed contour the sum is exactly 0.
 inline constexpr int kBoxBits = 26;
 inline constexpr double kBoxUnit = 1.0 / (1 << kBoxBits);
 
-/// A band of rows. Blocks of 16 pixels in which nothing changes are not looked at.
+/// A band of rows. Blocks of 16 pixels without changes are skipped.
 class DifferenceRows {
  public:
-  /// An edge may write this many columns beyond those of the image on either side: differences left
-  /// of column 0 count for all pixels, those right of the image for none.
+  /// An edge may write up to this many columns outside the image. Differences left of column 0
+  /// apply to all pixels, those right of the image to none.
   static constexpr int kMargin = 4;
 
-  /// The rows [first_row, end_row) of an image, all 0. What was added before must have been taken.
+  /// Starts the rows [first_row, end_row) of an image. All earlier differences must have been
+  /// taken.
   void begin(int width, int first_row, int end_row);
 
   int width() const { return width_; }
   int first_row() const { return first_row_; }
   int end_row() const { return end_row_; }
 
-  /// A column where differences may be added, in place of one that may be outside.
+  /// The nearest column that differences may be added to.
   int clamped(int column) const { return std::clamp(column, -kMargin, width_); }
 
-  /// A row to add to. What inner loops use is held in it, as writing marks would have a compiler
-  /// think that the rows themselves may change.
+  /// A row to add to. It holds copies of the pointers, as a compiler must assume that writing marks
+  /// may change members of DifferenceRows.
   struct Row {
     std::uint32_t* steps;  // at column 0
-    std::uint8_t* marks;   // of the block that begins there
+    std::uint8_t* marks;   // of the block that begins at column 0
 
-    /// All blocks from that of a column to that of another.
+    /// Marks the blocks from one column's to another's.
     void mark(int first, int last) const {
       for (int block = first >> kBlockBits; block <= last >> kBlockBits; ++block) marks[block] = 1;
     }
-    /// From a column on, the row is higher by this. The column is clamped().
+    /// Raises the row by `step` from a clamped() column on.
     void add(int column, std::uint32_t step) const {
       steps[column] += step;
       marks[column >> kBlockBits] = 1;
     }
-    /// The same of two columns.
+    /// Adds to two adjacent columns.
     void add_two(int column, std::uint32_t step, std::uint32_t next) const {
       steps[column] += step;
       steps[column + 1] += next;
       marks[column >> kBlockBits] = 1;
       marks[(column + 1) >> kBlockBits] = 1;
     }
-    /// The same of four.
+    /// Adds to four adjacent columns.
     void add_four(int column, IntFour step) const {
       std::uint32_t* to = steps + column;
       store_four(to, load_four(to) + step);
@@ -66,7 +67,7 @@ class DifferenceRows {
       marks[(column + 3) >> kBlockBits] = 1;
     }
   };
-  /// Rows up to three behind the last may get zeros.
+  /// Rows up to three behind the last may be passed, but only to add zeros.
   Row row(int index) {
     const auto below = static_cast<std::ptrdiff_t>(index - first_row_);
     return {steps_.data() + below * stride_ + kBlock, is_marked_.data() + below * blocks_ + 1};
@@ -74,16 +75,15 @@ class DifferenceRows {
   /// The row above.
   Row next(Row row) const { return {row.steps + stride_, row.marks + blocks_}; }
 
-  /// All pixels of the rows [first, end), which are of the band, are higher by this.
+  /// Raises all pixels of the rows [first, end) of the band by `step`.
   void add_rows(int first, int end, std::uint32_t step) {
     if (first >= end) return;
     left_[first - first_row_] += step;
     left_[end - first_row_] -= step;
   }
 
-  /// Calls for each row, in order, and makes it 0: block(row, x, count, values) with 16 values of
-  /// which `count` are pixels, and run(row, begin, end, value) for pixels between blocks that are
-  /// not 0.
+  /// Calls for each row, in order, block(row, x, count, values) with 16 values of which `count` are
+  /// pixels, and run(row, begin, end, value) for nonzero runs between blocks. Resets the rows to 0.
   template <typename Block, typename Run>
   void take(const Block& block, const Run& run);
 
@@ -95,11 +95,12 @@ class DifferenceRows {
   int width_ = 0;
   int first_row_ = 0;
   int end_row_ = 0;
-  int stride_ = 0;  // of values: a block left of column 0, and at least kMargin behind the last
-  int blocks_ = 0;  // of marks: those of a row, up to a multiple of 8
+  // in values: one block left of column 0, and at least kMargin values right of the image
+  int stride_ = 0;
+  int blocks_ = 0;  // marks per row, rounded up to a multiple of 8
   std::vector<std::uint32_t> steps_;
   std::vector<std::uint8_t> is_marked_;
-  std::vector<std::uint32_t> left_;  // differences from row to row
+  std::vector<std::uint32_t> left_;  // differences between rows, at column 0
 };
 
 template <typename Block, typename Run>
@@ -118,7 +119,7 @@ void DifferenceRows::take(const Block& block, const Run& run) {
       if (marked == 0) continue;
       std::memset(marks + group, 0, sizeof(marked));
       for (; marked != 0; marked &= marked - 1) {
-        // Marks are bytes of 1, the first in the lowest bits.
+        // A mark is a byte of 1; the first is in the lowest bits.
         const int at = (group + std::countr_zero(marked) / 8 - 1) * kBlock;
         std::uint32_t* values = steps + at;
         if (at < 0) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Runs of 64 segments carry their vertical extent, so that a band skips most others.
 #include "prefilter/shapes/raster/edge_list.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The segments of outlines in coordinates of cells, found again by the rows they pass.
+// Segments of outlines, searchable by the rows they cross.
 #pragma once
 
 #include <algorithm>
@@ -15,28 +15,27 @@
 
 namespace prefilter {
 
-/// Coordinates are finite and not farther from 0 than this, in pixels: those are counted by int,
-/// and 2^-20 of one is left behind the point.
-inline constexpr double kFarthestPixel = 1e9;
+/// Largest magnitude of coordinates, in pixels. They fit an int, and keep a precision of 2^-20
+/// pixels.
+inline constexpr double kMaxPixelCoordinate = 1e9;
 
-/// Outlines whose coverage is added up, as segments in runs that are close together.
+/// Segments of outlines whose coverage is added, in runs of consecutive segments.
 class EdgeList {
  public:
-  /// An outline that is kept elsewhere. Where `closes`, open contours are closed by a line.
+  /// Adds an outline, which must outlive the list. If `closes`, a line closes each open contour.
   void add(const Outline& outline, bool closes = true);
 
   bool empty() const { return runs_.empty(); }
-  /// The rows of pixels that hold all of it.
+  /// Vertical extent, in pixels.
   double low() const { return low_; }
   double high() const { return high_; }
 
-  /// Calls use(const MonotoneCurve&, bool backward) for the pieces, in coordinates of cells, of
-  /// the segments that may pass between two rows of cells.
+  /// Calls use(const MonotoneCurve&, bool backward) for the monotone pieces, in cell coordinates,
+  /// of segments that may pass between two rows of cells.
   template <typename Use>
   void for_pieces_between(int first_row, int end_row, const CellFilter& filter,
                           const Use& use) const;
-  /// Calls use(std::span<const Point2> controls, double weight) for the segments that may pass
-  /// between two heights, in pixels.
+  /// Calls use(controls, weight) for segments that may pass between two heights, in pixels.
   template <typename Use>
   void for_segments_between(double low, double high, const Use& use) const;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Before `to_shape` the offset s is that of the circle around start + s axis whose radius is
-// start_radius + s growth.
+// In the coordinates before `to_shape`, the points with offset s are on the circle around start + s
+// axis with the radius start_radius + s growth.
 #include "prefilter/shapes/raster/gradient_cutter.h"
 
 #include <algorithm>
@@ -17,13 +17,13 @@
 namespace prefilter {
 namespace {
 
-// Points of Gauss's rule tell the mean over a pixel of a kink, of which the slopes differ by less
-// than this over the pixel, within 0.3 of 1/255, and within 1.2 of it. The second counts where
-// means are exact whatever kinks there are, but in pixels that an outline passes.
-constexpr double kSmallKink = 1.0 / 16.0;
-constexpr double kSmallKinkOfOutlines = 1.0 / 4.0;
+// Largest change of slope over a pixel at which a kink may be ignored: the error of Gaussian
+// quadrature is then within 0.3 and 1.2 of 1/255. The second bound applies where means over whole
+// pixels are exact, so that only pixels with outlines are affected.
+constexpr double kMaxIgnoredKink = 1.0 / 16.0;
+constexpr double kMaxIgnoredKinkAtOutlines = 1.0 / 4.0;
 
-// A circle that holds all of a box, before `to_shape`.
+// A circle around a box, in the coordinates before `to_shape`.
 struct Disc {
   Point2 center;
   double radius = 0.0;
@@ -44,22 +44,22 @@ Disc disc_around(const Box2& box, const AffineMap2& map) {
   return disc;
 }
 
-class Cutter {
+class CutterBuilder {
  public:
-  Cutter(const Paint& paint, const Disc& disc)
+  CutterBuilder(const Paint& paint, const Disc& disc)
       : paint_(paint),
         disc_(disc),
         axis_(paint.end - paint.start),
         growth_(paint.end_radius - paint.start_radius) {}
 
-  Outline make() {
+  Outline build() {
     if (!has_fine_stops(paint_)) add_circles();
     if (is_cone(paint_)) add_cone();
     return std::move(outline_);
   }
 
  private:
-  // The largest offset, away from 0, of which the circle can meet the disc.
+  // The largest magnitude of an offset whose circle can meet the disc.
   double farthest_offset() const {
     const double reach =
         disc_.radius + length(paint_.start - disc_.center) + std::abs(paint_.start_radius);
@@ -75,9 +75,9 @@ class Cutter {
     }
   }
 
-  // The offsets from 0 to 1 at which the color jumps, or its slope does.
+  // Collects the offsets in [0, 1] at which the color jumps or its slope does.
   void find_kinks() {
-    // A stretch of the offset, its slope and the value at its end.
+    // An interval of offsets with linear color.
     struct Stretch {
       double end = 0.0;
       ChannelValues slope{};
@@ -97,7 +97,7 @@ class Cutter {
     }
     stretches.push_back({1.0, {}, stops.back().value, stops.back().value});
     const double per_pixel = offset_per_pixel(paint_);
-    const double small_kink = has_jumps(paint_) ? kSmallKink : kSmallKinkOfOutlines;
+    const double small_kink = has_jumps(paint_) ? kMaxIgnoredKink : kMaxIgnoredKinkAtOutlines;
     const auto add = [&](const Stretch& before, const Stretch& after) {
       for (int c = 0; c < paint_.channels; ++c) {
         const double slope = after.slope[c] - before.slope[c];
@@ -112,12 +112,12 @@ class Cutter {
       add(stretches[i], stretches[i + 1]);
     }
     if (paint_.spread == Spread::kPad) return;
-    // Where periods meet there is one circle for both.
+    // Adjacent periods share a circle at their common offset, which add_periods() adds.
     std::erase_if(kinks_, [](double kink) { return !(kink > 0.0 && kink < 1.0); });
   }
 
   void add_periods() {
-    const double most = std::min(std::ceil(farthest_offset()), kMostPeriods);
+    const double most = std::min(std::ceil(farthest_offset()), kMaxPeriods);
     for (double period = -most; period <= most; period += 1.0) {
       add_circle(period);
       const bool turned = paint_.spread == Spread::kReflect && std::fmod(period, 2.0) != 0.0;
@@ -152,7 +152,7 @@ class Cutter {
     outline_.close();
   }
 
-  // The sides of the cone from its apex on; they are parallel where the radii are the same.
+  // Adds the sides of the cone from its apex; they are parallel if the radii are equal.
   void add_cone() {
     const double along = length(axis_);
     const Point2 unit = (1.0 / along) * axis_;
@@ -160,7 +160,7 @@ class Cutter {
     const double sine = growth_ / along;
     const double cosine = std::sqrt(std::max(1.0 - sine * sine, 0.0));
     for (const double side : {-1.0, 1.0}) {
-      // Where the side touches the circle of the start, and its direction.
+      // The point where the side touches the start circle, and the side's direction.
       const Point2 normal = side * cosine * across - sine * unit;
       const Point2 touched = paint_.start + paint_.start_radius * normal;
       const Point2 way = cosine * unit + side * sine * across;
@@ -175,7 +175,7 @@ class Cutter {
   }
 
   static bool is_near(const Point2& point) {
-    return std::abs(point.x) <= kFarthestPixel && std::abs(point.y) <= kFarthestPixel;
+    return std::abs(point.x) <= kMaxPixelCoordinate && std::abs(point.y) <= kMaxPixelCoordinate;
   }
 
   const Paint& paint_;
@@ -191,7 +191,7 @@ class Cutter {
 
 Outline gradient_cutter(const Paint& paint, const Box2& box) {
   if (paint.kind != Paint::Kind::kRadialStops || box.empty()) return {};
-  return Cutter(paint, disc_around(box, paint.to_shape)).make();
+  return CutterBuilder(paint, disc_around(box, paint.to_shape)).build();
 }
 
 }  // namespace prefilter

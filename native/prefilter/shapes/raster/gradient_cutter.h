@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The curves along which a gradient between two circles has a kink or a jump.
+// Curves along which a radial gradient has a kink or a jump.
 #pragma once
 
 #include "prefilter/base/outline.h"
@@ -8,9 +8,9 @@
 
 namespace prefilter {
 
-/// The circles of the stops of a kRadialStops paint, where these are not fine, and the sides of its
-/// cone, as far as they may pass a box; nothing for other paints. Between these curves the color is
-/// smooth. Fill rules and orientation do not count.
+/// The circles at the stops of a kRadialStops paint, unless its stops are fine, and the sides of
+/// its cone, as far as they may cross a box. Empty for other paints. Between these curves the color
+/// is smooth. The fill rule and orientation of the result have no meaning.
 Outline gradient_cutter(const Paint& paint, const Box2& box);
 
 }  // namespace prefilter

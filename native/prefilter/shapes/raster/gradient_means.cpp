@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Where the offset is t + a x + b y for x and y in [-1/2, 1/2], the mean of f is
-//   (F(t + (a + b) / 2) - F(t + (a - b) / 2) - F(t - (a - b) / 2) + F(t - (a + b) / 2)) / (a b),
-// F'' = f. Of a periodic f the mean is taken out first, so that F is periodic as well, and small.
+//
+// (F(t + (a + b) / 2) - F(t + (a - b) / 2) - F(t - (a - b) / 2) + F(t - (a + b) / 2)) / (a b)
+//
+// with F'' = f. For a periodic f the mean is subtracted first, so that F is periodic and small.
 #include "prefilter/shapes/raster/gradient_means.h"
 
 #include <algorithm>
@@ -12,12 +14,12 @@
 namespace prefilter {
 namespace {
 
-// Offsets beyond are known to no part of a period.
-constexpr double kFarthestOffset = 1e12;
-// With less between the sides, differences of the second integral are rounded; a strip has the mean
-// along its length then.
-constexpr double kLeastSlopes = 1e-9;
-constexpr double kLeastRatio = 1e-6;
+// Beyond this offset, a double does not determine the position within a period.
+constexpr double kMaxOffset = 1e12;
+// Below these, differences of the second integral lose precision; a strip then takes the mean along
+// its length. The first bounds the product of both slopes, the second their ratio.
+constexpr double kMinSlopeProduct = 1e-9;
+constexpr double kMinSlopeRatio = 1e-6;
 
 }  // namespace
 
@@ -39,7 +41,7 @@ GradientMeans::GradientMeans(const Paint& paint) : paint_(paint) {
   integrate();
 }
 
-// Those of one period, from its begin.
+// Adds the stops of one period that begins at `begin`.
 void GradientMeans::add_stops(bool turned, double begin) {
   std::vector<GradientStop> stops = paint_.stops;
   stops.insert(stops.begin(), {0.0, stops.front().value});
@@ -121,14 +123,14 @@ void GradientMeans::add_second(double offset, double factor, ChannelValues* sum)
   }
 }
 
-// Whether there is one stretch all over the offsets that are so far from a reduced one.
+// Whether the value is linear at offsets within `half` of a reduced one.
 bool GradientMeans::is_linear_around(double offset, double half, const Stretch& stretch) const {
   const bool is_first = &stretch == &stretches_.front();
   const bool is_last = &stretch == &stretches_.back();
-  const bool goes_on = period_ == 0.0;
+  const bool is_extended = period_ == 0.0;
   const double end = is_last ? period_ : (&stretch + 1)->begin;
-  return ((is_first && goes_on) || offset - half >= stretch.begin) &&
-         ((is_last && goes_on) || offset + half <= end);
+  return ((is_first && is_extended) || offset - half >= stretch.begin) &&
+         ((is_last && is_extended) || offset + half <= end);
 }
 
 ChannelValues GradientMeans::mean_between(double low, double high) const {
@@ -153,7 +155,7 @@ ChannelValues GradientMeans::mean_of(const Offsets& offsets) const {
   const double slopes = offsets.along * offsets.across;
   const double wide = std::max(offsets.along, offsets.across);
   const double narrow = std::min(offsets.along, offsets.across);
-  if (slopes < kLeastSlopes || narrow < kLeastRatio * wide) {
+  if (slopes < kMinSlopeProduct || narrow < kMinSlopeRatio * wide) {
     return mean_between(t - 0.5 * wide, t + 0.5 * wide);
   }
   const double factor = 1.0 / slopes;
@@ -188,33 +190,33 @@ GradientMeans::Offsets GradientMeans::offsets_in(const Point2& center, const Poi
   offsets.across = std::abs(*high - *low);
   offsets.bend = std::max(std::abs(bend_along), std::abs(bend_across));
   const double farthest = std::abs(*middle) + offsets.along + offsets.across + offsets.bend;
-  offsets.is_known = farthest < kFarthestOffset;
+  offsets.is_known = farthest < kMaxOffset;
   offsets.is_far = !offsets.is_known;
   return offsets;
 }
 
-ChannelValues GradientMeans::over(const Point2& center, const Point2& side,
-                                  const Point2& other_side) const {
+ChannelValues GradientMeans::mean_over(const Point2& center, const Point2& side,
+                                       const Point2& other_side) const {
   const Offsets offsets = offsets_in(center, side, other_side);
   if (offsets.is_known) return mean_of(offsets);
   return offsets.is_far && period_ > 0.0 ? mean_ : paint_.at(center);
 }
 
-ChannelValues GradientMeans::over_pixel(const Point2& center) const {
-  // What the offset is off from a linear one, in distances of stops.
-  constexpr double kMostBend = 1.0 / 64.0;
-  // More periods have nearly the mean of one, wherever they begin and end.
-  constexpr double kMostPeriodsInPixel = 32.0;
-  constexpr int kMostParts = 16;
+ChannelValues GradientMeans::mean_over_pixel(const Point2& center) const {
+  // Largest deviation of the offset from a linear function, in distances between stops.
+  constexpr double kMaxBend = 1.0 / 64.0;
+  // The mean over more periods than this hardly depends on where they begin and end.
+  constexpr double kMaxPeriodsInPixel = 32.0;
+  constexpr int kMaxParts = 16;
   const Offsets whole = offsets_in(center, {1.0, 0.0}, {0.0, 1.0});
-  // Cut by a cone's side a pixel is not asked for.
-  if (!whole.is_known) return over(center, {1.0, 0.0}, {0.0, 1.0});
+  // Pixels cut by a cone's side are handled elsewhere.
+  if (!whole.is_known) return mean_over(center, {1.0, 0.0}, {0.0, 1.0});
   const double t = reduced(whole.middle);
-  const bool has_many = std::max(whole.along, whole.across) > kMostPeriodsInPixel * period_;
+  const bool has_many = std::max(whole.along, whole.across) > kMaxPeriodsInPixel * period_;
   int parts = 1;
   if (!(has_many && period_ > 0.0) &&
       !is_linear_around(t, whole.along + whole.across + whole.bend, stretch_at(t))) {
-    while (parts < kMostParts && whole.bend > kMostBend * stop_distance_ * parts * parts) {
+    while (parts < kMaxParts && whole.bend > kMaxBend * stop_distance_ * parts * parts) {
       parts *= 2;
     }
   }
@@ -224,7 +226,7 @@ ChannelValues GradientMeans::over_pixel(const Point2& center) const {
   for (int j = 0; j < parts; ++j) {
     for (int i = 0; i < parts; ++i) {
       const Point2 middle = center + Point2{(i + 0.5) * size - 0.5, (j + 0.5) * size - 0.5};
-      const ChannelValues value = over(middle, {size, 0.0}, {0.0, size});
+      const ChannelValues value = mean_over(middle, {size, 0.0}, {0.0, size});
       for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += size * size * value[c];
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The mean of a gradient between two circles over a part of a pixel, however fine its stops are.
+// Mean of a radial gradient over a part of a pixel, independent of how fine its stops are.
 #pragma once
 
 #include <vector>
@@ -9,38 +9,39 @@
 
 namespace prefilter {
 
-/// Over a parallelogram along which the offset is linear, the mean of the values is exact: a
-/// difference of their second integral. It takes as long for a thousand periods as for one.
+/// The mean over a parallelogram in which the offset is linear is exact: a difference of second
+/// integrals. A thousand periods take as long as one.
 class GradientMeans {
  public:
-  /// The paint, of kind kRadialStops, must outlive it.
+  /// The paint, of kind kRadialStops, must outlive this object.
   explicit GradientMeans(const Paint& paint);
   explicit GradientMeans(Paint&&) = delete;
 
-  /// The mean over a parallelogram with these sides around a point. It should be so small that
-  /// circles are nearly straight in it.
-  ChannelValues over(const Point2& center, const Point2& side, const Point2& other_side) const;
-  /// The mean over a pixel around a point, in as many parts as the bend of circles needs.
-  ChannelValues over_pixel(const Point2& center) const;
+  /// Mean over a parallelogram with these sides around a point. It should be so small that circles
+  /// are almost straight in it.
+  ChannelValues mean_over(const Point2& center, const Point2& side, const Point2& other_side) const;
+  /// Mean over the pixel around a point, split into as many parts as the curvature of circles
+  /// requires.
+  ChannelValues mean_over_pixel(const Point2& center) const;
 
  private:
-  // From an offset on the value is linear.
+  // The value is linear from `begin` to the next stretch.
   struct Stretch {
     double begin = 0.0;
     ChannelValues value{};
     ChannelValues slope{};
-    // The first and second integrals of the value, less `mean_`, at `begin`.
+    // First and second integrals of the value minus `mean_`, at `begin`.
     ChannelValues first{};
     ChannelValues second{};
   };
   // The offset in a parallelogram, as a linear function.
   struct Offsets {
-    bool is_known = true;  // not outside of a cone
-    bool is_far = false;   // so that it tells no part of a period
+    bool is_known = true;  // false outside the cone
+    bool is_far = false;   // too large to determine the position within a period
     double middle = 0.0;
-    double along = 0.0;  // what it grows by along the sides
+    double along = 0.0;  // increase along each side
     double across = 0.0;
-    double bend = 0.0;  // the larger of its second differences over half a side
+    double bend = 0.0;  // the larger of the second differences over half a side
   };
 
   void add_stops(bool turned, double begin);
@@ -56,10 +57,10 @@ class GradientMeans {
   void add_second(double offset, double factor, ChannelValues* sum) const;
 
   const Paint& paint_;
-  double period_ = 0.0;         // 0 for none
+  double period_ = 0.0;         // 0 if not periodic
   double stop_distance_ = 1.0;  // on average
   std::vector<Stretch> stretches_;
-  ChannelValues mean_{};  // of a period
+  ChannelValues mean_{};  // over a period
 };
 
 }  // namespace prefilter

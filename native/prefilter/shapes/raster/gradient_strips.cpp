@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Between two stops a gradient along a line is linear, so the shape is cut into strips at its
+// stops.
 #include "prefilter/shapes/raster/gradient_strips.h"
 
 #include <algorithm>
@@ -11,15 +13,16 @@
 namespace prefilter {
 namespace {
 
-// A strip narrower than this, in pixels, has one color: with a slope of the inverse of its width,
-// what moments are rounded by would show.
-constexpr double kNarrowestStrip = 1.0 / 4096.0;
+// A narrower strip, in pixels, is painted with one color: its slope, of the inverse of its width,
+// would magnify the rounding of moments.
+constexpr double kMinStripWidth = 1.0 / 4096.0;
 
 // The offset as a linear function of the shape's coordinates.
 LinearFunction offset_function(const Paint& paint) {
   const Point2 axis = paint.end - paint.start;
   const Point2 unit = (1.0 / dot(axis, axis)) * axis;
-  // p is origin + x_axis u + y_axis v, and the offset (u, v) . unit less its value at the start.
+  // A point p is origin + x_axis u + y_axis v; its offset is (u, v) . unit minus the value at
+  // start.
   const AffineMap2& map = paint.to_shape;
   const double determinant = cross(map.x_axis, map.y_axis);
   const Point2 u{map.y_axis.y / determinant, -map.y_axis.x / determinant};
@@ -35,11 +38,11 @@ Paint constant_paint(const Paint& paint, const ChannelValues& value) {
   return out;
 }
 
-// From the value `before` at offset `low` to `after` at `high`.
+// Linear color from `before` at the offset `low` to `after` at `high`.
 Paint linear_paint(const Paint& paint, const LinearFunction& offset, double low, double high,
                    const ChannelValues& before, const ChannelValues& after) {
   if (before == after) return constant_paint(paint, before);
-  if (high - low < kNarrowestStrip * length(offset.slope)) {
+  if (high - low < kMinStripWidth * length(offset.slope)) {
     ChannelValues mean;
     for (std::size_t c = 0; c < mean.size(); ++c) mean[c] = 0.5 * (before[c] + after[c]);
     return constant_paint(paint, mean);
@@ -96,12 +99,12 @@ std::vector<GradientStrip> gradient_strips(const Outline& outline, const Paint& 
     add(stops.back().offset, HUGE_VAL, constant_paint(paint, stops.back().value));
     return strips;
   }
-  // Beyond, the shape has the mean of a period.
-  if (!(most - least <= kMostPeriods)) {
+  // A shape with more periods takes the mean of a period.
+  if (!(most - least <= kMaxPeriods)) {
     strips.push_back({outline, constant_paint(paint, mean_of(stops))});
     return strips;
   }
-  // One period from 0 to 1, with its ends as stops.
+  // One period from 0 to 1, with stops at its ends.
   std::vector<GradientStop> period = stops;
   if (period.front().offset > 0.0) period.insert(period.begin(), {0.0, period.front().value});
   if (period.back().offset < 1.0) period.push_back({1.0, period.back().value});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Gradients along a line, as shapes of linear color.
+// Splits shapes with linear gradients into strips of linear color.
 #pragma once
 
 #include <vector>
@@ -10,13 +10,13 @@
 
 namespace prefilter {
 
-/// What lies between two stops.
+/// The part of a shape between two stops.
 struct GradientStrip {
   Outline outline;
   Paint paint;  // kConstant or kLinear
 };
 
-/// A shape painted by kLinearStops, cut at its stops.
+/// Cuts a shape painted with kLinearStops at its stops.
 std::vector<GradientStrip> gradient_strips(const Outline& outline, const Paint& paint);
 
 }  // namespace prefilter

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Clips each segment at its roots of the linear function, as Sutherland and Hodgman's algorithm
+// clips polygons.
 #include "prefilter/shapes/half_plane.h"
 
 #include <array>
@@ -17,12 +19,12 @@ struct Interval {
   double to;
 };
 
-// Where along a segment the function is at least 0.
+// Finds the parameter intervals of a segment in which the function is at least 0.
 void find_inside(std::span<const Point2> controls, double weight, const LinearFunction& function,
                  std::vector<Interval>* inside) {
   inside->clear();
   bool is_inside = true;
-  std::array<Point2, Outline::kMostDegree + 1> values;  // of the function, as x
+  std::array<Point2, Outline::kMostDegree + 1> values;  // of the function, in x
   for (std::size_t i = 0; i < controls.size(); ++i) {
     values[i] = {function(controls[i]), 0.0};
     is_inside = is_inside && values[i].x >= 0.0;
@@ -64,7 +66,7 @@ void find_inside(std::span<const Point2> controls, double weight, const LinearFu
   }
 }
 
-// Where the function is at least 0.
+// The part of an outline where the function is at least 0.
 Outline clip(const Outline& outline, const LinearFunction& function) {
   Outline clipped;
   std::vector<Interval> inside;

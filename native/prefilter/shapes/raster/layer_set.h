@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Some of the layers of a stack, found from the top.
+// A set of layers, searchable from the top.
 #pragma once
 
 #include <bit>
@@ -10,7 +10,8 @@
 
 namespace prefilter {
 
-/// A set of numbers below a count. Words of bits, over which words tell which of those are not 0.
+/// A set of integers below a fixed count: a hierarchy of bit sets, in which each bit tells whether
+/// a word of the level below is nonzero.
 class LayerSet {
  public:
   static constexpr std::uint32_t kNone = UINT32_MAX;
@@ -36,8 +37,8 @@ class LayerSet {
       layer /= 64;
     }
   }
-  /// Calls use(layer) for those below `end` and above `behind`, which may be kNone, from the
-  /// highest until it returns false. Returns whether it never did.
+  /// Calls use(layer) for the layers below `end` and above `behind`, which may be kNone, from the
+  /// highest, until it returns false. Returns whether it never did.
   template <typename Use>
   bool each_between(std::uint32_t end, std::uint32_t behind, const Use& use) const {
     const std::uint32_t least = behind == kNone ? 0 : behind + 1;
@@ -52,7 +53,7 @@ class LayerSet {
     }
     return true;
   }
-  /// The highest one below `end`, or kNone.
+  /// The highest layer below `end`, or kNone.
   std::uint32_t highest_below(std::uint32_t end) const {
     for (std::size_t level = 0; level < levels_.size(); ++level) {
       std::uint32_t at = end / 64;

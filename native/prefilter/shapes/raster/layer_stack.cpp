@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Linear gradients are split into strips; radial gradients get cutters.
 #include "prefilter/shapes/raster/layer_stack.h"
 
 #include <utility>
@@ -14,7 +15,7 @@ namespace {
 void add_layer(const Outline& outline, const StackShape& shape, const Paint& paint,
                LayerStack* stack) {
   if (outline.empty()) return;
-  // Of what winds once both rules say the same, and that of odd numbers takes less.
+  // For outlines that wind once both fill rules agree; even-odd is cheaper.
   const FillRule rule = shape.winds_once ? FillRule::kEvenOdd : shape.fill_rule;
   stack->layers.push_back({{}, rule, &paint, shape.winds_once, false});
   stack->layers.back().edges.add(outline);
@@ -31,12 +32,12 @@ void add_cutter(const Outline& outline, const Paint& paint, LayerStack* stack) {
 
 }  // namespace
 
-LayerStack stack_of(std::span<const StackShape> shapes) {
+LayerStack make_stack(std::span<const StackShape> shapes) {
   LayerStack stack;
   for (const StackShape& shape : shapes) {
     if (shape.paint->kind != Paint::Kind::kLinearStops) {
       add_layer(*shape.outline, shape, *shape.paint, &stack);
-      // Over the layer, which may hide what is below it.
+      // The cutter goes above its layer, which may hide the layers below.
       if (!shape.outline->empty()) add_cutter(*shape.outline, *shape.paint, &stack);
       continue;
     }
@@ -49,13 +50,13 @@ LayerStack stack_of(std::span<const StackShape> shapes) {
   return stack;
 }
 
-LayerStack stack_of(std::span<const Shape> shapes) {
+LayerStack make_stack(std::span<const Shape> shapes) {
   std::vector<StackShape> of_stack;
   of_stack.reserve(shapes.size());
   for (const Shape& shape : shapes) {
     of_stack.push_back({&shape.outline, shape.fill_rule, &shape.paint, shape.winds_once});
   }
-  return stack_of(of_stack);
+  return make_stack(of_stack);
 }
 
 }  // namespace prefilter

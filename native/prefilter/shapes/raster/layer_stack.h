@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Shapes over each other as they are: what overlaps, and winds more than once, is found cell by
-// cell.
+// Stacks of shapes as they are given; overlaps and multiple windings are resolved cell by cell.
 #pragma once
 
 #include <cstdint>
@@ -19,23 +18,23 @@ struct StackLayer {
   EdgeList edges;
   FillRule fill_rule = FillRule::kNonzero;
   const Paint* paint = nullptr;  // of any kind but kLinearStops
-  bool winds_once = false;       // whether that is known
-  /// Shows nothing: its outline is where the color of the layer before has a kink or a jump.
+  bool winds_once = false;       // known to wind once
+  /// Draws nothing: its outline marks where the color of the previous layer has a kink or a jump.
   bool is_cutter = false;
 };
 
 struct LayerStack {
   std::vector<StackLayer> layers;  // from the lowest
-  bool is_constant = true;         // whether all colors are
-  /// Whether layers are put over each other by what they cover of pixels, as CompositedRows does,
-  /// so that only some pixels are looked at more closely.
+  bool is_constant = true;         // whether all colors are constant
+  /// Whether layers are composited by their coverage of pixels (CompositedRows), so that only
+  /// marked pixels need a more exact method.
   bool is_composited = false;
-  /// What layers are of that are no shapes.
+  /// Storage for outlines and paints that are not part of the input.
   std::deque<Outline> outlines;
   std::deque<Paint> paints;
 };
 
-/// What a stack is made of.
+/// One shape of a stack.
 struct StackShape {
   const Outline* outline = nullptr;
   FillRule fill_rule = FillRule::kNonzero;
@@ -43,8 +42,8 @@ struct StackShape {
   bool winds_once = false;
 };
 
-/// Shapes over each other, from the lowest, of which the outlines and paints must outlive it.
-LayerStack stack_of(std::span<const StackShape> shapes);
-LayerStack stack_of(std::span<const Shape> shapes);
+/// Stacks shapes from the lowest. Their outlines and paints must outlive the stack.
+LayerStack make_stack(std::span<const StackShape> shapes);
+LayerStack make_stack(std::span<const Shape> shapes);
 
 }  // namespace prefilter

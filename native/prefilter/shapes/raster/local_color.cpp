@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Linear functions of the position, in cell coordinates.
 #include "prefilter/shapes/raster/local_color.h"
 
 #include "prefilter/shapes/raster/channel_count.h"

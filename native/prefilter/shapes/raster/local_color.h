@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A linear paint on each cell.
+// A linear paint expressed on each cell.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace prefilter {
 
-/// Of 1, u and v, in the coordinates from a cell's center.
+/// Coefficients or integrals of 1, u and v, the coordinates relative to a cell's center.
 using LinearPowers = std::array<double, 3>;
 
 /// The exponents of u and v in LinearPowers.
@@ -18,15 +18,16 @@ inline constexpr std::array<std::array<int, 2>, 3> kLinearExponents = {{{0, 0}, 
 
 class LocalColor {
  public:
-  /// Of a layer's paint, which is linear. Both must outlive this.
+  /// The paint must be linear; it and the filter must outlive this object.
   LocalColor(const Paint& paint, const CellFilter& filter) : paint_(paint), filter_(filter) {}
 
   int channels() const { return paint_.channels; }
-  /// For each channel: the value at a cell's center, and what it grows by along a cell.
+  /// For each channel, the value at a cell's center and its increase along a cell in u and v.
   void powers(int column, int row, std::array<LinearPowers, kMaxChannels>* out) const;
-  /// Adds the integral of the color over a part of a cell, of which those of 1, u and v are given.
+  /// Adds the integral of the color over a part of a cell, given the integrals of 1, u and v.
   void add_integral(int column, int row, const LinearPowers& moments, double* out) const;
-  /// Adds the means over cells [begin, end) times a share to `out`, the values of the first one on.
+  /// Adds `share` times the means over cells [begin, end) to `out`, the values of the first cell
+  /// on.
   void add_means(int begin, int end, int row, double share, double* out) const;
 
  private:

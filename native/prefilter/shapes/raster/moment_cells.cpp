@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// A sparse grid of cells; section 2.2.1 defines the moments.
 #include "prefilter/shapes/raster/moment_cells.h"
 
 #include <algorithm>
@@ -14,16 +15,16 @@ void MomentCells<N>::begin_band(const CellFilter& filter, int width, int first_r
              filter.first_cell(first_row), filter.first_cell(end_row - 1) + filter.taps};
   blocks_ = (window_.end_column - window_.first_column) / kBlock + 1;
   const std::size_t rows = window_.end_row - window_.first_row;
-  // What is there is all 0, so that another shape of rows needs no more than room.
+  // All values are 0, so rows of another length only need enough memory.
   const std::size_t blocks = rows * blocks_;
   if (touched_.size() < blocks) touched_.resize(blocks);
   if (slots_.size() < blocks * kBlock) slots_.resize(blocks * kBlock);
   if (left_.size() < rows) left_.resize(rows);
-  use_no_row();
+  reset_used_range();
 }
 
 template <int N>
-std::int32_t MomentCells<N>::made(int row, std::int32_t* slot) {
+std::int32_t MomentCells<N>::cell_in_slot(int row, std::int32_t* slot) {
   if (*slot == 0) {
     cells_.emplace_back();
     *slot = static_cast<std::int32_t>(cells_.size());
@@ -35,18 +36,18 @@ std::int32_t MomentCells<N>::made(int row, std::int32_t* slot) {
 
 template <int N>
 std::int32_t MomentCells<N>::cell(int column, int row) {
-  const std::size_t place = slot_place(column, row);
+  const std::size_t slot = slot_index(column, row);
   const int block = (column - window_.first_column) / kBlock;
   first_used_block_ = std::min(first_used_block_, block);
   end_used_block_ = std::max(end_used_block_, block + 1);
-  touched_[place / kBlock] |= static_cast<std::uint16_t>(1U << place % kBlock);
-  return made(row, &slots_[place]);
+  touched_[slot / kBlock] |= static_cast<std::uint16_t>(1U << slot % kBlock);
+  return cell_in_slot(row, &slots_[slot]);
 }
 
 template <int N>
 template <typename Use>
 void MomentCells<N>::for_slots(int row, const Use& use) const {
-  const std::size_t first = slot_place(window_.first_column, row) / kBlock;
+  const std::size_t first = slot_index(window_.first_column, row) / kBlock;
   for (std::size_t block = first + first_used_block_; block < first + end_used_block_; ++block) {
     for (unsigned bits = touched_[block]; bits != 0; bits &= bits - 1) {
       use(block * kBlock + static_cast<std::size_t>(std::countr_zero(bits)));
@@ -57,9 +58,9 @@ void MomentCells<N>::for_slots(int row, const Use& use) const {
 template <int N>
 void MomentCells<N>::add(const MonotoneCurve& piece, int sign) {
   const auto left_of_window = [&](int row, double y_begin, double y_end) {
-    const std::int32_t place = made(row, &left_[row - window_.first_row]);
+    const std::int32_t slot = cell_in_slot(row, &left_[row - window_.first_row]);
     const double center = row + 0.5;
-    batch_.add_line({0.0, y_begin - center}, {0.0, y_end - center}, sign, place, &cells_);
+    batch_.add_line({0.0, y_begin - center}, {0.0, y_end - center}, sign, slot, &cells_);
   };
   if (piece.curve.kind == CurveKind::kLine) {
     cut_line_to_cells(
@@ -83,10 +84,10 @@ void MomentCells<N>::add(const MonotoneCurve& piece, int sign) {
 template <int N>
 void MomentCells<N>::columns_of(int row, std::vector<int>* columns) const {
   columns->clear();
-  const std::size_t first = slot_place(window_.first_column, row);
-  for_slots(row, [&](std::size_t place) {
-    if (cells_[slots_[place] - 1].is_zero()) return;
-    columns->push_back(window_.first_column + static_cast<int>(place - first));
+  const std::size_t first = slot_index(window_.first_column, row);
+  for_slots(row, [&](std::size_t slot) {
+    if (cells_[slots_[slot] - 1].is_zero()) return;
+    columns->push_back(window_.first_column + static_cast<int>(slot - first));
   });
 }
 
@@ -102,13 +103,13 @@ template <int N>
 void MomentCells<N>::clear() {
   for (int row = first_used_row_; row < end_used_row_; ++row) {
     left_[row - window_.first_row] = 0;
-    for_slots(row, [&](std::size_t place) {
-      slots_[place] = 0;
-      touched_[place / kBlock] = 0;
+    for_slots(row, [&](std::size_t slot) {
+      slots_[slot] = 0;
+      touched_[slot / kBlock] = 0;
     });
   }
   cells_.clear();
-  use_no_row();
+  reset_used_range();
 }
 
 template class MomentCells<0>;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Differences between pixels are added only where arcs change them; the cells between arcs form
+// runs of constant coverage.
 #include "prefilter/shapes/raster/moment_rows.h"
 
 #include <algorithm>
@@ -11,7 +13,7 @@ namespace prefilter {
 namespace {
 
 constexpr double kMomentUnit = 1.0 / (1 << kMomentBits);
-// Of a run's weights: times moments they make coverage.
+// Bits of a run's weights, so that weights times moments are coverage.
 constexpr int kWeightBits = kCoverageBits - kMomentBits;
 
 }  // namespace
@@ -20,7 +22,7 @@ template <int N>
 MomentRows<N>::MomentRows(const CellFilter& filter, int width) : filter_(filter), width_(width) {
   const int taps = filter.taps;
   using ByBasis = std::array<double, 2 * kPairs>;
-  // Powers of y by P_b: y^b is P_b + its mean P_0.
+  // Expresses powers of y in P_b: y^b is P_b plus its mean times P_0.
   const auto by_basis = [&](const auto& coefficient) {
     ByBasis out{};
     for (int b = 0; b < kCount; ++b) {
@@ -70,7 +72,7 @@ MomentRows<N>::MomentRows(const CellFilter& filter, int width) : filter_(filter)
     sum += rounded[0];
     run_weights_.push_back(rounded);
   }
-  // Full rows then weigh 1 together, to the last bit.
+  // Makes the weights of a full row add up to exactly 1.
   run_weights_[taps / 2][0] += (std::int64_t{1} << kWeightBits) - sum;
 }
 
@@ -95,7 +97,7 @@ void MomentRows<N>::add_coverage(const MomentCells<N>& cells, int first_row, int
     cells.columns_of(row, &columns_);
     Across across = cells.left_of(row);
     start_row(row, across, rows);
-    // What lies between two cells whose pixels do not meet is a run.
+    // Cells between two columns whose pixels do not overlap form a run.
     for (std::size_t begin = 0; begin < columns_.size();) {
       std::size_t end = begin + 1;
       while (end < columns_.size() && columns_[end] < columns_[end - 1] + filter_.taps) ++end;
@@ -105,7 +107,7 @@ void MomentRows<N>::add_coverage(const MomentCells<N>& cells, int first_row, int
   }
 }
 
-// What is left of all columns is a run from the first pixel on.
+// The arcs left of all columns contribute a run from the first pixel on.
 template <int N>
 void MomentRows<N>::start_row(int row, const Across& across, CoverageRows* rows) {
   const int begin_y = std::max(first_row_, filter_.first_pixel_over(row));
@@ -116,9 +118,9 @@ void MomentRows<N>::start_row(int row, const Across& across, CoverageRows* rows)
   }
 }
 
-// Cells [from, to) that are alike.
+// Adds the cells [from, to), whose moments are equal.
 template <int N>
-void MomentRows<N>::add_alike(int from, int to, const Across& across) {
+void MomentRows<N>::add_equal_cells(int from, int to, const Across& across) {
   bool is_empty = true;
   std::array<double, 2 * kPairs> units{};
   for (int b = 0; b < kCount; ++b) {
@@ -202,7 +204,7 @@ void MomentRows<N>::add_cell(int column, const ArcMoments<N>& cell, const Across
 template <int N>
 void MomentRows<N>::add_span(const MomentCells<N>& cells, int row, std::span<const int> columns,
                              Across* across, CoverageRows* rows) {
-  // The pixels that weigh some cell of the span.
+  // The pixels whose filter covers a cell of the span.
   first_pixel_ = std::max(0, filter_.first_pixel_over(columns.front()));
   end_pixel_ = std::min(width_, filter_.last_pixel_over(columns.back()) + 1);
   const int pixels = std::max(0, end_pixel_ - first_pixel_);
@@ -210,17 +212,17 @@ void MomentRows<N>::add_span(const MomentCells<N>& cells, int row, std::span<con
   if (filter_.is_separable) sums_.assign(pixels, {});
   values_.assign(pixels, {});
 
-  constexpr int kFar = 1 << 28;
-  add_alike(-kFar, columns.front(), *across);
+  constexpr int kFarColumn = 1 << 28;
+  add_equal_cells(-kFarColumn, columns.front(), *across);
   int next = columns.front();
   for (const int column : columns) {
-    if (column > next) add_alike(next, column, *across);
+    if (column > next) add_equal_cells(next, column, *across);
     const ArcMoments<N>& cell = cells.at(column, row);
     add_cell(column, cell, *across);
     for (int b = 0; b < kCount; ++b) (*across)[b] += cell.across(b);
     next = column + 1;
   }
-  add_alike(next, kFar, *across);
+  add_equal_cells(next, kFarColumn, *across);
 
   constexpr double kScale = std::int64_t{1} << kCoverageBits;
   const int tap_pairs = (filter_.taps + 1) / 2;
@@ -237,7 +239,7 @@ void MomentRows<N>::add_span(const MomentCells<N>& cells, int row, std::span<con
     }
     for (int pair = 0; pair < tap_pairs; ++pair) values.v[pair] *= kScale;
   }
-  // The rows of pixels that weigh this row of cells.
+  // The pixel rows whose filter covers this row of cells.
   const int begin_y = std::max(first_row_, filter_.first_pixel_over(row));
   const int end_y = std::min(end_row_, filter_.last_pixel_over(row) + 1);
   for (int y = begin_y; y < end_y; ++y) {
@@ -246,7 +248,7 @@ void MomentRows<N>::add_span(const MomentCells<N>& cells, int row, std::span<con
     const double* values = reinterpret_cast<const double*>(values_.data()) + tap;
     std::int64_t last = run_value(tap, across_before);
     for (int i = 0; i < pixels; ++i) {
-      const std::int64_t here = std::llrint(values[kMostTaps * i]);
+      const std::int64_t here = std::llrint(values[kMaxTaps * i]);
       steps[i] += here - last;
       last = here;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Which cells of a row something may still be seen in.
+// The cells of a row in which further layers may be visible.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace prefilter {
 
-/// Columns from 0, all open at first.
+/// A set of columns, all open at first.
 class OpenColumns {
  public:
   void reset(int count) {
@@ -24,7 +24,7 @@ class OpenColumns {
     left_ = 0;
     words_.assign(static_cast<std::size_t>(count) / 64 + 1, 0);
   }
-  /// Opens those of up to 16 closed ones by their bits, from a multiple of 16 on.
+  /// Opens columns of a block of 16 closed ones by a bit mask; `column` is a multiple of 16.
   void open(int column, std::uint16_t bits) {
     words_[static_cast<std::size_t>(column) / 64] |= std::uint64_t{bits} << (column % 64);
     left_ += std::popcount(bits);
@@ -37,7 +37,7 @@ class OpenColumns {
     words_[static_cast<std::size_t>(column) / 64] &= ~(std::uint64_t{1} << (column % 64));
     --left_;
   }
-  /// The first open one from a column on that is below `end`, or `end`.
+  /// The first open column in [column, end), or `end`.
   int next(int column, int end) const {
     end = std::min(end, count_);
     while (column < end) {

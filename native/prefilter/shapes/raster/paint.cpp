@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Gradients as in SVG 1.1, chapter 13, and the HTML canvas's two-circle radial gradient.
 #include "prefilter/shapes/paint.h"
 
 #include <algorithm>
@@ -9,13 +10,13 @@
 namespace prefilter {
 namespace {
 
-// The offset of a point of a gradient between two circles: the largest one of which the circle, the
-// radius not below 0, passes through it. There is none outside of a cone.
+// Offset of a point in a gradient between two circles: the largest offset whose circle passes
+// through the point and has a radius of at least 0. None outside the cone.
 std::optional<double> radial_offset(const Paint& paint, const Point2& p) {
   const Point2 axis = paint.end - paint.start;
   const Point2 to_point = p - paint.start;
   const double growth = paint.end_radius - paint.start_radius;
-  // |to_point - s axis| = start_radius + s growth.
+  // Solves |to_point - s axis| = start_radius + s growth.
   const double a = dot(axis, axis) - growth * growth;
   const double b = dot(to_point, axis) + paint.start_radius * growth;
   const double c = dot(to_point, to_point) - paint.start_radius * paint.start_radius;
@@ -27,7 +28,7 @@ std::optional<double> radial_offset(const Paint& paint, const Point2& p) {
   const double discriminant = b * b - a * c;
   if (!(discriminant >= 0.0)) return std::nullopt;
   const double root = std::sqrt(discriminant);
-  // Without canceling: one root by the sum of equal signs, the other by their product c / a.
+  // Avoids cancellation: one root is q / a, the other follows from their product c / a.
   const double q = b + std::copysign(root, b);
   const double first = q / a;
   const double second = q == 0.0 ? first : c / q;
@@ -88,7 +89,7 @@ ChannelValues Paint::at(const Point2& point) const {
 Paint Paint::transformed(const AffineMap2& map) const {
   Paint moved = *this;
   moved.to_shape = {map.linear(to_shape.x_axis), map.linear(to_shape.y_axis), map(to_shape.origin)};
-  // The value at p is that which the old paint has where the map takes to p.
+  // The new paint at map(p) has the value of the old paint at p.
   const double determinant = cross(map.x_axis, map.y_axis);
   for (int c = 0; c < channels; ++c) {
     const double by_x = (map.y_axis.y * along_x[c] - map.x_axis.y * along_y[c]) / determinant;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Bounds from the slope of the offset, which is largest along the line through both centers.
 #include "prefilter/shapes/raster/paint_bounds.h"
 
 #include <algorithm>
@@ -20,15 +21,15 @@ bool is_cone(const Paint& paint) {
   return dot(axis, axis) >= growth * growth;
 }
 
-// Along a ray from the apex of the circles the radius grows by |growth| - |axis| for each unit of
-// the offset at least.
+// Along a ray from the apex of the circles, the radius grows by at least |growth| - |axis| per unit
+// of the offset.
 double offset_per_pixel(const Paint& paint) {
   const Point2 axis = paint.end - paint.start;
   const AffineMap2& map = paint.to_shape;
   const double determinant = cross(map.x_axis, map.y_axis);
   const Point2 along_x{map.y_axis.y / determinant, -map.x_axis.y / determinant};
   const Point2 along_y{-map.y_axis.x / determinant, map.x_axis.x / determinant};
-  // The largest length of a direction of length 1.
+  // The spectral norm of the linear map.
   const double squares = dot(along_x, along_x) + dot(along_y, along_y);
   const double area = cross(along_x, along_y);
   const double root = std::sqrt(std::max(squares * squares - 4.0 * area * area, 0.0));
@@ -39,16 +40,16 @@ double offset_per_pixel(const Paint& paint) {
 }
 
 bool has_fine_stops(const Paint& paint) {
-  // Where circles are that far apart, few pixels are cut by several.
+  // Distance in pixels at which few pixels are cut by several circles.
   constexpr double kFinePixels = 4.0;
-  // The circles of a cone are as close as one likes near its sides.
-  constexpr std::size_t kMostStopsOfCone = 16;
+  // Near the sides of a cone, circles become arbitrarily dense.
+  constexpr std::size_t kMaxConeStops = 16;
   if (paint.kind != Paint::Kind::kRadialStops) return false;
   const bool repeats = paint.spread != Spread::kPad;
-  if (is_cone(paint)) return repeats || paint.stops.size() > kMostStopsOfCone;
+  if (is_cone(paint)) return repeats || paint.stops.size() > kMaxConeStops;
   const double pixels = kFinePixels * offset_per_pixel(paint);
   if (repeats && pixels >= 1.0) return true;
-  // Three in so many pixels, those of the next period included.
+  // Whether three stops, including those of the next period, are within this distance.
   std::vector<double> offsets;
   for (const GradientStop& stop : paint.stops) {
     if (offsets.empty() || offsets.back() < stop.offset) offsets.push_back(stop.offset);
@@ -74,7 +75,7 @@ bool has_jumps(const Paint& paint) {
   return paint.spread == Spread::kRepeat && stops.front().value != stops.back().value;
 }
 
-double most_passing(const Paint& paint, int channels) {
+double max_transmittance(const Paint& paint, int channels) {
   if (channels < kMaxChannels) return 0.0;
   if (is_cone(paint)) return 1.0;
   double least = 1.0;
@@ -114,7 +115,7 @@ PaintVariation variation_per_pixel(const Paint& paint) {
       const double step = paint.stops[i + 1].offset - paint.stops[i].offset;
       const double change = std::abs(paint.stops[i + 1].value[c] - paint.stops[i].value[c]);
       if (step > 0.0 && change > 0.0) {
-        // A pixel's diagonal is not twice its side.
+        // The diagonal of a pixel is shorter than twice its side.
         steepest = std::max(steepest, std::min(2.0 * change / step * per_pixel, change));
       }
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Means by RoundGradient where it applies, then by GradientMeans or quadrature.
 #include "prefilter/shapes/raster/paint_means.h"
 
 #include <algorithm>
@@ -11,8 +12,8 @@ namespace prefilter {
 
 PaintMeans::PaintMeans(const Paint& paint) : paint_(paint), round_(RoundGradient::of(paint, 1.0)) {
   if (paint.kind != Paint::Kind::kRadialStops) return;
-  // A pixel that no jump cuts must not see beyond it, as it may where circles are taken as
-  // straight.
+  // GradientMeans takes circles as straight, which could mix in the color beyond a jump that does
+  // not cut the pixel.
   if (has_fine_stops(paint) || !has_jumps(paint)) gradient_.emplace(paint);
 }
 
@@ -46,13 +47,14 @@ void PaintMeans::find(int begin, int end, int row, double* out) const {
   for (int x = begin; x < end;) {
     const Point2 center{x + 0.5, row + 0.5};
     if (round_) {
-      const int done = round_->add_means(center, end - x, 1.0, out);
-      out += done * channels;
-      x += done;
+      const int added = round_->add_means(center, end - x, 1.0, out);
+      out += added * channels;
+      x += added;
       if (x == end) return;
     }
     const Point2 pixel{x + 0.5, row + 0.5};
-    const ChannelValues mean = gradient_ ? gradient_->over_pixel(pixel) : mean_of_points(pixel);
+    const ChannelValues mean =
+        gradient_ ? gradient_->mean_over_pixel(pixel) : mean_of_points(pixel);
     out = std::copy_n(mean.begin(), channels, out);
     ++x;
   }

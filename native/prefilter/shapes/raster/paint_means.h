@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The mean of a paint over each pixel of a row.
+// Mean of a paint over each pixel of a row.
 #pragma once
 
 #include <optional>
@@ -11,15 +11,15 @@
 
 namespace prefilter {
 
-/// Exact for constant and linear paints. Others are told by slope and curvature where they are
-/// smooth, and else by GradientMeans, or by nine points of a pixel where they jump between stops
-/// that are not fine, so that means are within the range of the values.
+/// Exact for constant and linear paints. Other paints use slope and curvature where they are
+/// smooth, otherwise GradientMeans, or nine points per pixel if they jump between stops that are
+/// not fine. All means stay within the range of the values.
 class PaintMeans {
  public:
-  /// The paint, of any kind but kLinearStops, must outlive it.
+  /// The paint must outlive this object, and be of another kind than kLinearStops.
   explicit PaintMeans(const Paint& paint);
 
-  /// Writes the means over the pixels [begin, end) of a row to `out`, channel by channel.
+  /// Writes the means over the pixels [begin, end) of a row to `out`, with interleaved channels.
   void find(int begin, int end, int row, double* out) const;
 
  private:

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Section 2.2.1 with a polynomial color: the moments of the color are those of the region, shifted
+// by the color's exponents.
 #include "prefilter/shapes/raster/painted_rows.h"
 
 #include <span>
@@ -29,7 +31,7 @@ void PaintedRows<N>::add_cell(int column, int row, const Moments& moments,
   const int count = filter_.degree + 1;
   const int channels = color.channels();
   for (int c = 0; c < channels; ++c) {
-    // The moments of the color: of the color's powers and the filter's together.
+    // Moments of the color: products of the powers of the color and of the filter.
     std::array<double, (N + 1) * (N + 1)> colored{};
     for (std::size_t k = 0; k < powers[c].size(); ++k) {
       const auto [m, n] = kLinearExponents[k];
@@ -68,12 +70,12 @@ void PaintedRows<N>::add_values(const MomentCells<N>& cells, const LocalColor& c
   for (int row = cells.first_used_row(); row < cells.end_used_row(); ++row) {
     cells.columns_of(row, &columns_);
     std::array<std::int64_t, N + 1> across = cells.left_of(row);
-    // By powers of y, from P_b.
+    // From P_b to powers of y.
     const auto in_powers = [](std::array<double, N + 1> by_basis) {
       for (int b = 1; b <= N; ++b) by_basis[b] += mean_power(b) * by_basis[0];
       return by_basis;
     };
-    const auto add_alike = [&](int begin, int end) {
+    const auto add_equal_cells = [&](int begin, int end) {
       bool is_full = true;
       for (int b = 1; b <= N; ++b) is_full = is_full && across[b] == 0;
       if (is_full) {
@@ -90,7 +92,7 @@ void PaintedRows<N>::add_values(const MomentCells<N>& cells, const LocalColor& c
       }
       for (int column = begin; column < end; ++column) add_cell(column, row, moments, color);
     };
-    add_alike(cells.window().first_column, columns_.empty() ? end_column : columns_.front());
+    add_equal_cells(cells.window().first_column, columns_.empty() ? end_column : columns_.front());
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const int column = columns_[i];
       const ArcMoments<N>& cell = cells.at(column, row);
@@ -105,7 +107,7 @@ void PaintedRows<N>::add_values(const MomentCells<N>& cells, const LocalColor& c
       }
       add_cell(column, row, moments, color);
       for (int b = 0; b <= N; ++b) across[b] += cell.across(b);
-      add_alike(column + 1, i + 1 < columns_.size() ? columns_[i + 1] : end_column);
+      add_equal_cells(column + 1, i + 1 < columns_.size() ? columns_[i + 1] : end_column);
     }
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The values of pixels under a shape whose color changes from place to place.
+// Pixel values of a shape whose color varies linearly.
 #pragma once
 
 #include <vector>
@@ -13,16 +13,15 @@
 
 namespace prefilter {
 
-/// Weighs cells by a filter times a color, which is a polynomial on each cell: exact for linear
-/// colors. N is the filter's degree and the color's together.
+/// Weights cells by the product of a filter and a color, a polynomial on each cell, so that linear
+/// colors are exact. N is the sum of both degrees.
 template <int N>
 class PaintedRows {
  public:
-  /// For images of a width. The filter must outlive this.
+  /// For images of a given width. The filter must outlive this object.
   PaintedRows(const CellFilter& filter, int width);
 
-  /// Adds to `values`, those of the pixel rows [first_row, end_row), the color of what lies in
-  /// the cells.
+  /// Adds the color of the region in the cells to `values`, the pixel rows [first_row, end_row).
   void add_values(const MomentCells<N>& cells, const LocalColor& color, int first_row, int end_row,
                   BandValues* values);
 
@@ -33,7 +32,7 @@ class PaintedRows {
   void add_full_cells(int begin, int end, int row, double share, const LocalColor& color);
 
   const CellFilter& filter_;
-  bool is_box_;  // which weighs a pixel's own cell alone, all over alike
+  bool is_box_;  // each pixel covers one cell with constant weight
   CellPixels pixels_;
   std::vector<int> columns_;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Approximates curves adaptively by parabolas through three points.
 #include "prefilter/shapes/raster/parabolas.h"
 
 #include <utility>
@@ -7,9 +8,9 @@
 namespace prefilter {
 namespace {
 
-constexpr int kMostHalves = 12;
-// Between the places that are looked at a parabola may be off by more.
-constexpr double kErrorThere = 0.1 * kParabolaError;
+constexpr int kMaxParabolaHalvings = 12;
+// Smaller than kParabolaError, as the error between the tested points may be larger.
+constexpr double kTestedParabolaError = 0.1 * kParabolaError;
 
 Parabola rising(Parabola chord) {
   if (chord.low.y > chord.high.y) {
@@ -19,13 +20,13 @@ Parabola rising(Parabola chord) {
   return chord;
 }
 
-// Between two parameters, through the point at the middle one.
+// The parabola through both ends and the curve's point at the middle parameter.
 Parabola parabola_through(const Point2& begin, const Point2& middle, const Point2& end,
                           double t_begin, double t_end) {
   Parabola out = rising({begin, end, 0.0, t_begin, t_end, 0.0});
   const double up = middle.y - out.low.y;
   const double down = middle.y - out.high.y;
-  // A middle at a height of the ends does not tell.
+  // A middle point too close to the height of an end does not determine the bend.
   const double height = out.high.y - out.low.y;
   if (!(up > 0.05 * height && -down > 0.05 * height)) return out;
   const Point2 way = out.high - out.low;
@@ -36,9 +37,9 @@ Parabola parabola_through(const Point2& begin, const Point2& middle, const Point
   return out;
 }
 
-class ParabolaMaker {
+class ParabolaFitter {
  public:
-  ParabolaMaker(const MonotoneCurve& piece, const IsSeen& is_seen, std::vector<Parabola>* out)
+  ParabolaFitter(const MonotoneCurve& piece, const IsSeen& is_seen, std::vector<Parabola>* out)
       : piece_(piece), is_seen_(is_seen), out_(out) {}
 
   void append(const Point2& begin, double t_begin, const Point2& end, double t_end, int halves) {
@@ -50,7 +51,7 @@ class ParabolaMaker {
     const double middle = 0.5 * (t_begin + t_end);
     const Point2 point = within(piece_.curve.at(middle), begin, end);
     const Parabola parabola = parabola_through(begin, point, end, t_begin, t_end);
-    // With a bend it passes the middle.
+    // A parabola with a bend passes through the middle by construction.
     if (halves == 0 || ((parabola.bend != 0.0 || is_near(parabola, point)) &&
                         is_near(parabola, 0.5 * (t_begin + middle), begin, end) &&
                         is_near(parabola, 0.5 * (middle + t_end), begin, end))) {
@@ -69,10 +70,12 @@ class ParabolaMaker {
   bool is_near(const Parabola& parabola, double t, const Point2& begin, const Point2& end) const {
     return is_near(parabola, within(piece_.curve.at(t), begin, end));
   }
-  // Whether what lies between is little, of which a cell holds no more than a cell's height.
+  // Whether the area between parabola and point is small; a cell contains at most a cell's height
+  // of it.
   static bool is_near(const Parabola& parabola, const Point2& point) {
     const double height = parabola.high.y - parabola.low.y;
-    return std::abs(parabola.x_at(point.y) - point.x) * std::min(height, 1.0) <= kErrorThere;
+    return std::abs(parabola.x_at(point.y) - point.x) * std::min(height, 1.0) <=
+           kTestedParabolaError;
   }
 
   const MonotoneCurve& piece_;
@@ -89,8 +92,8 @@ void append_parabolas(const MonotoneCurve& piece, const IsSeen& is_seen,
     parabolas->push_back(rising({piece.begin, piece.end, 0.0, 0.0, 1.0, 0.0}));
     return;
   }
-  ParabolaMaker(piece, is_seen, parabolas)
-      .append(piece.begin, piece.t_begin, piece.end, piece.t_end, kMostHalves);
+  ParabolaFitter(piece, is_seen, parabolas)
+      .append(piece.begin, piece.t_begin, piece.end, piece.t_end, kMaxParabolaHalvings);
 }
 
 }  // namespace prefilter

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Monotone curves as parabolas: x as a polynomial of y, so that where they pass lines and each
-// other, and what lies beside them, has a closed form.
+// Approximates monotone curves by parabolas, with x a quadratic polynomial of y. Their crossings
+// with lines and each other, and the areas beside them, have closed forms.
 #pragma once
 
 #include <algorithm>
@@ -13,21 +13,21 @@
 
 namespace prefilter {
 
-/// From its lower end; between two heights x is a polynomial of degree 2 that is monotone but for
-/// what a parabola is off, and so is the curve's parameter.
+/// An arc between two heights on which x and the curve's parameter are quadratic in y, and monotone
+/// up to rounding.
 struct Parabola {
   Point2 low;
   Point2 high;
-  double bend = 0.0;  // of x: what y^2 is multiplied by
+  double bend = 0.0;  // coefficient of y^2 in x
   double t_low = 0.0;
   double t_high = 1.0;
   double t_bend = 0.0;
 
   double x_at(double y) const { return at(y, low.x, high.x, bend); }
   double t_at(double y) const { return at(y, t_low, t_high, t_bend); }
-  /// Where it passes an x between those of its ends.
+  /// Height at which it reaches an x between those of its ends.
   double y_at(double x) const {
-    // From the lower end, bend u^2 + linear u + off is 0.
+    // Relative to the lower end, bend u^2 + linear u + off = 0.
     const double height = high.y - low.y;
     const double linear = (high.x - low.x) / height - bend * height;
     const double off = low.x - x;
@@ -45,14 +45,14 @@ struct Parabola {
   }
 };
 
-/// How much of a cell lies between a curve and its parabolas at most.
+/// Largest area between a curve and its parabolas within a cell, as a fraction of the cell.
 inline constexpr double kParabolaError = 5e-6;
 
-/// Whether it matters where a curve is that is monotone from a point to another.
+/// Whether the position of a curve matters that is monotone between two points.
 using IsSeen = std::function<bool(const Point2& begin, const Point2& end)>;
 
-/// Appends the parabolas of a piece, in the order of its parameter, in the coordinates of cells;
-/// chords where it is not seen. What is level is left out.
+/// Appends the parabolas of a piece in cell coordinates, in the order of its parameter; chords if
+/// it is not visible. Horizontal parts are left out.
 void append_parabolas(const MonotoneCurve& piece, const IsSeen& is_seen,
                       std::vector<Parabola>* parabolas);
 

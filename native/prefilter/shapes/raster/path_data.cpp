@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// The grammar of SVG 1.1, section 8.3.9, and its error rule: everything before the first error is
+// drawn.
 #include "prefilter/shapes/path_data.h"
 
 #include <algorithm>
@@ -27,7 +29,7 @@ constexpr std::array<bool, 256> kIsCommand = [] {
 }();
 bool is_command(char c) { return kIsCommand[static_cast<unsigned char>(c)]; }
 
-// Whole numbers of so many digits are exact, and so are the powers of ten up to there.
+// Integers of up to this many digits are exact in a double, and so are the powers of ten.
 constexpr std::size_t kExactDigits = 15;
 constexpr std::array<double, kExactDigits + 1> kPowersOfTen = [] {
   std::array<double, kExactDigits + 1> powers{1.0};
@@ -35,7 +37,7 @@ constexpr std::array<double, kExactDigits + 1> kPowersOfTen = [] {
   return powers;
 }();
 
-// What is left of a text.
+// The remaining text.
 class Cursor {
  public:
   explicit Cursor(std::string_view text) : text_(text) {}
@@ -50,7 +52,7 @@ class Cursor {
     skip(1);
     skip_blanks();
   }
-  // A sign, digits with a point among them, an exponent; what is behind the longest one stays.
+  // Reads the longest number: a sign, digits with a decimal point, an exponent.
   bool take_number(double* number) {
     std::size_t end = !empty() && (front() == '+' || front() == '-') ? 1 : 0;
     std::uint64_t digits = 0;
@@ -64,7 +66,7 @@ class Cursor {
     if (whole + fraction == 0) return false;
     const std::size_t exponent = exponent_size(end);
     if (exponent == 0 && whole + fraction <= kExactDigits) {
-      // Both are exact, so that the quotient is the nearest number.
+      // Both are exact, so the quotient is correctly rounded.
       const double size = static_cast<double>(digits) / kPowersOfTen[fraction];
       *number = front() == '-' ? -size : size;
     } else {
@@ -90,7 +92,7 @@ class Cursor {
     return end - begin;
   }
 
-  // How many digits there are from a place on; adds them to those before.
+  // Counts the digits from a position on, and appends them to a number.
   std::size_t take_digits(std::size_t begin, std::uint64_t* digits) const {
     std::size_t end = begin;
     for (; end < text_.size() && is_digit(text_[end]); ++end) {
@@ -99,7 +101,7 @@ class Cursor {
     return end - begin;
   }
 
-  // Of an exponent at a place, with its letter; 0 for none.
+  // Length of the exponent at a position, including its letter; 0 if there is none.
   std::size_t exponent_size(std::size_t begin) const {
     if (begin == text_.size() || (text_[begin] != 'e' && text_[begin] != 'E')) return 0;
     std::size_t end = begin + 1;
@@ -111,12 +113,12 @@ class Cursor {
   std::string_view text_;
 };
 
-// Draws the commands of path data.
+// Converts path commands to steps.
 class PathPen {
  public:
   PathPen(std::size_t most, PathSteps* steps) : most_(most), steps_(steps) {}
 
-  // One command, as often as its numbers repeat it; returns whether all of it is valid.
+  // Draws a command as often as its arguments repeat. Returns whether all of them are valid.
   bool draw(char letter, std::string_view text) {
     const bool is_relative = letter >= 'a';
     const char name = is_relative ? letter : static_cast<char>(letter + ('a' - 'A'));
@@ -175,17 +177,17 @@ class PathPen {
     cursor.skip_blanks();
     const std::size_t count = argument_count(name);
     std::array<double, 6> numbers;
-    std::size_t found = 0;
+    std::size_t read_count = 0;
     bool is_any = false;
-    while (!has_too_many_ && cursor.take_number(&numbers[found])) {
+    while (!has_too_many_ && cursor.take_number(&numbers[read_count])) {
       cursor.skip_separator();
-      if (++found < count) continue;
+      if (++read_count < count) continue;
       segment(name, is_relative, numbers);
       if (name == 'm') name = 'l';
-      found = 0;
+      read_count = 0;
       is_any = true;
     }
-    return is_any && found == 0 && cursor.empty();
+    return is_any && read_count == 0 && cursor.empty();
   }
 
   void segment(char name, bool is_relative, const std::array<double, 6>& numbers) {
@@ -234,7 +236,8 @@ class PathPen {
     at_ = end;
   }
 
-  // The last control point on the other side, if a curve of the same kind has one.
+  // The reflected control point of the previous curve if it is of the same kind, otherwise the
+  // current point.
   Point2 mirror(char kind) const {
     if (mirrored_kind_ != kind) return at_;
     return {2.0 * at_.x - mirrored_.x, 2.0 * at_.y - mirrored_.y};
@@ -281,7 +284,7 @@ class PathPen {
   bool has_too_many_ = false;
   Point2 at_;
   Point2 begin_;
-  char mirrored_kind_ = ' ';  // of the curve whose control point may be mirrored
+  char mirrored_kind_ = ' ';  // kind of the previous curve, if its control point may be reflected
   Point2 mirrored_;
 };
 
@@ -299,7 +302,8 @@ void PathPen::arc_to(const Point2& radii, double rotation, bool is_large, bool i
   const double cos = elementary::cos(angle);
   const double sin = elementary::sin(angle);
   const Point2 half = 0.5 * (start - end);
-  // The start seen from the middle of the chord, where the ellipse is a unit circle.
+  // The start in the coordinates in which the ellipse is a unit circle and the chord's middle is
+  // the origin.
   double x = (cos * half.x + sin * half.y) / rx;
   double y = (cos * half.y - sin * half.x) / ry;
   double squared = x * x + y * y;
@@ -311,9 +315,9 @@ void PathPen::arc_to(const Point2& radii, double rotation, bool is_large, bool i
     y /= size;
     squared = 1.0;
   }
-  // Of radii so much larger than the chord, its inverse would not be finite.
-  constexpr double kLeastSquared = 1e-300;
-  if (!(squared >= kLeastSquared && squared <= 1.0) || !std::isfinite(rx * ry)) {
+  // The inverse of a smaller squared half chord overflows.
+  constexpr double kMinSquared = 1e-300;
+  if (!(squared >= kMinSquared && squared <= 1.0) || !std::isfinite(rx * ry)) {
     add('L', {end});
     return;
   }
@@ -345,7 +349,7 @@ void PathPen::arc_to(const Point2& radii, double rotation, bool is_large, bool i
   }
 }
 
-// Where in (0, 1) a coordinate of a curve has no slope; returns how many places.
+// Parameters in (0, 1) at which the derivative of a coordinate is 0; returns their number.
 int turns_of(std::span<const double> values, double weight, std::array<double, 2>* turns) {
   double a = 0.0;
   double b = 0.0;
@@ -358,13 +362,13 @@ int turns_of(std::span<const double> values, double weight, std::array<double, 2
     b = 2.0 * (d1 - d0);
     c = d0;
   } else {
-    // Of the quotient of two quadratics; the weights at the ends are 1.
+    // Derivative of a quotient of two quadratics; the weights at the ends are 1.
     const double d2 = values[2] - values[0];
     a = (weight - 1.0) * d2;
     b = d2 - 2.0 * weight * d0;
     c = weight * d0;
   }
-  // The sum of both roots is -b / a, and their product c / a.
+  // The sum of the roots is -b / a, and their product c / a.
   const double discriminant = b * b - 4.0 * a * c;
   if (discriminant < 0.0) return 0;
   const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
@@ -390,7 +394,7 @@ double value_at(std::span<const double> values, double weight, double t) {
          (shares[0] + shares[1] + shares[2]);
 }
 
-// Takes the ends and the extremes of curves into a box.
+// Extends a box by the ends and extrema of curves.
 class DrawnBox {
  public:
   void add(char letter, std::span<const double> numbers, bool is_drawn_from) {
@@ -413,7 +417,7 @@ class DrawnBox {
     std::array<double, 4> x{at_.x};
     std::array<double, 4> y{at_.y};
     for (std::size_t i = 1; i < count; ++i) {
-      // The weight of a conic is before its end.
+      // A conic's weight precedes its end point.
       const std::size_t place = 2 * (i - 1) + (letter == 'W' && i == 2 ? 1 : 0);
       x[i] = numbers[place];
       y[i] = numbers[place + 1];
@@ -421,15 +425,15 @@ class DrawnBox {
     const auto along_x = std::span<const double>(x).first(count);
     const auto along_y = std::span<const double>(y).first(count);
     for (const auto& along : {along_x, along_y}) {
-      // Control points between the ends have the curve between them, too.
+      // A curve whose control points are between its ends is between them, too.
       const auto [low, high] = std::minmax(along.front(), along.back());
       if (std::all_of(along.begin(), along.end(),
                       [least = low, most = high](double v) { return v >= least && v <= most; })) {
         continue;
       }
       std::array<double, 2> turns;
-      const int found = turns_of(along, weight, &turns);
-      for (int i = 0; i < found; ++i) {
+      const int turn_count = turns_of(along, weight, &turns);
+      for (int i = 0; i < turn_count; ++i) {
         box_.include({value_at(along_x, weight, turns[i]), value_at(along_y, weight, turns[i])});
       }
     }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// A scanline algorithm: crossings with the middle of each row are sorted, filled runs are
+// collected, and equal runs of adjacent rows are merged to rectangles.
 #include "prefilter/shapes/pixel_outline.h"
 
 #include <algorithm>
@@ -15,10 +17,10 @@
 namespace prefilter {
 namespace {
 
-// Where a contour passes the middle of a row.
-struct Passage {
+// Crossing of a contour with the middle of a row.
+struct RowCrossing {
   int row = 0;
-  int column = 0;  // the first pixel whose center is not left of it
+  int column = 0;  // the first pixel whose center is not left of the crossing
   int winding = 1;
 };
 
@@ -29,19 +31,20 @@ struct Run {
   int first_row = 0;
 };
 
-// What transforms are rounded by should not count where edges are at centers of pixels.
-double settled(double coordinate) { return std::round(coordinate * 65536.0) / 65536.0; }
+// Rounds a coordinate so that errors of transforms do not matter for edges through pixel centers.
+double round_coordinate(double coordinate) { return std::round(coordinate * 65536.0) / 65536.0; }
 
-int limited(double index) {
-  return static_cast<int>(std::clamp(index, double{-kMostCrispPixels}, double{kMostCrispPixels}));
+int clamp_index(double index) {
+  return static_cast<int>(std::clamp(index, double{-kMaxOutlinePixel}, double{kMaxOutlinePixel}));
 }
 
-void append_passages(const MonotoneCurve& piece, bool backward, std::vector<Passage>* passages) {
+void append_crossings(const MonotoneCurve& piece, bool backward,
+                      std::vector<RowCrossing>* crossings) {
   const bool rises = piece.begin.y < piece.end.y;
   const auto [low, high] = std::minmax(piece.begin.y, piece.end.y);
-  // Rows whose middle is above the lower end, and not above the higher one.
-  const int first = limited(std::floor(settled(low) - 0.5) + 1.0);
-  const int end = limited(std::floor(settled(high) - 0.5) + 1.0);
+  // The rows whose middle is above the lower end, and not above the upper end.
+  const int first = clamp_index(std::floor(round_coordinate(low) - 0.5) + 1.0);
+  const int end = clamp_index(std::floor(round_coordinate(high) - 0.5) + 1.0);
   for (int row = first; row < end; ++row) {
     const double y = std::clamp(row + 0.5, low, high);
     double x = piece.begin.x;
@@ -50,8 +53,8 @@ void append_passages(const MonotoneCurve& piece, bool backward, std::vector<Pass
     } else if (y != piece.begin.y) {
       x = piece.curve.at(crossing(piece, 1, y, piece.t_begin)).x;
     }
-    const int column = limited(std::ceil(settled(x) - 0.5));
-    passages->push_back({row, column, rises != backward ? 1 : -1});
+    const int column = clamp_index(std::ceil(round_coordinate(x) - 0.5));
+    crossings->push_back({row, column, rises != backward ? 1 : -1});
   }
 }
 
@@ -65,7 +68,7 @@ void append_box(const Run& run, int end_row, Outline* outline) {
   outline->close();
 }
 
-// Runs go on from row to row for as long as they are the same.
+// Extends runs over rows for as long as they are equal.
 class RunJoiner {
  public:
   explicit RunJoiner(Outline* outline) : outline_(outline) {}
@@ -98,7 +101,7 @@ class RunJoiner {
 
   Outline* outline_;
   int row_ = 0;
-  std::vector<Run> before_;  // of the row before, which have not come to an end
+  std::vector<Run> before_;  // open runs of the previous row
   std::vector<Run> runs_;
 };
 
@@ -106,35 +109,36 @@ class RunJoiner {
 
 Outline pixel_outline(const Outline& outline, FillRule rule) {
   for (const Point2& point : outline.points()) {
-    if (!(std::abs(point.x) <= kFarthestPixel && std::abs(point.y) <= kFarthestPixel)) {
+    if (!(std::abs(point.x) <= kMaxPixelCoordinate && std::abs(point.y) <= kMaxPixelCoordinate)) {
       throw_invalid("outline: has a point that is not finite, or farther than 1e9 pixels away");
     }
   }
   EdgeList edges;
   edges.add(outline);
-  std::vector<Passage> passages;
+  std::vector<RowCrossing> crossings;
   if (!edges.empty()) {
-    const int low = limited(std::floor(edges.low()) - 1.0);
-    const int high = limited(std::ceil(edges.high()) + 1.0);
+    const int low = clamp_index(std::floor(edges.low()) - 1.0);
+    const int high = clamp_index(std::ceil(edges.high()) + 1.0);
     edges.for_pieces_between(low, high, *find_cell_filter("box"),
                              [&](const MonotoneCurve& piece, bool backward) {
-                               append_passages(piece, backward, &passages);
+                               append_crossings(piece, backward, &crossings);
                              });
   }
-  std::sort(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
+  std::sort(crossings.begin(), crossings.end(), [](const RowCrossing& a, const RowCrossing& b) {
     return a.row != b.row ? a.row < b.row : a.column < b.column;
   });
   Outline pixels;
   RunJoiner joiner(&pixels);
-  for (std::size_t i = 0; i < passages.size();) {
-    const int row = passages[i].row;
+  for (std::size_t i = 0; i < crossings.size();) {
+    const int row = crossings[i].row;
     int winding = 0;
     int begin = 0;
-    for (; i < passages.size() && passages[i].row == row;) {
-      const int column = passages[i].column;
+    for (; i < crossings.size() && crossings[i].row == row;) {
+      const int column = crossings[i].column;
       const bool was_filled = is_filled(winding, rule);
-      for (; i < passages.size() && passages[i].row == row && passages[i].column == column; ++i) {
-        winding += passages[i].winding;
+      for (; i < crossings.size() && crossings[i].row == row && crossings[i].column == column;
+           ++i) {
+        winding += crossings[i].winding;
       }
       if (is_filled(winding, rule) == was_filled) continue;
       if (was_filled) {

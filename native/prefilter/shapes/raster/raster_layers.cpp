@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Decides for each group of overlapping shapes whether they are split into visible pieces,
+// composited by pixel, or stacked.
 #include "prefilter/shapes/raster/raster_layers.h"
 
 #include <algorithm>
@@ -7,7 +9,7 @@
 #include <utility>
 
 #include "prefilter/base/parallel.h"
-#include "prefilter/shapes/outline/resolve_soon.h"
+#include "prefilter/shapes/outline/resolve_within_budget.h"
 #include "prefilter/shapes/outline/shared_edges.h"
 #include "prefilter/shapes/outline/visible_pieces.h"
 #include "prefilter/shapes/raster/box_coverage.h"
@@ -18,15 +20,16 @@
 namespace prefilter {
 namespace {
 
-// Coverage is summed up in whole numbers that hold this many times a full cell, and more.
-constexpr int kMostShapesTogether = 16;
+// Integer coverage holds at least this many times a full cell without overflow.
+constexpr int kMaxShapesPerLayer = 16;
 
 bool has_alpha(const Paint& paint) { return paint.channels == kMaxChannels; }
 
 constexpr int kAlpha = kMaxChannels - 1;
 
-// Before a background a shape adds, at every point, its value less what it hides of it.
-void take_background(const ChannelValues& background, Paint* paint) {
+// Subtracts the part of the background that a paint hides, so that a shape's value can be added to
+// the background.
+void subtract_background(const ChannelValues& background, Paint* paint) {
   const auto take = [&](ChannelValues* value, double opaque) {
     const double alpha = has_alpha(*paint) ? (*value)[kAlpha] : opaque;
     for (int c = 0; c < paint->channels; ++c) (*value)[c] -= alpha * background[c];
@@ -37,7 +40,7 @@ void take_background(const ChannelValues& background, Paint* paint) {
   for (GradientStop& stop : paint->stops) take(&stop.value, 1.0);
 }
 
-// The wavelet method leaves gaps as they are, and with them what winds round what.
+// The wavelet method does not close open contours, so winding numbers are kept as given.
 bool is_left_open(const Outline& outline) {
   for (std::size_t i = 0; i < outline.contour_count(); ++i) {
     const auto segments = outline.contour(i);
@@ -48,11 +51,11 @@ bool is_left_open(const Outline& outline) {
   return false;
 }
 
-// Whether what shows of a shape under others of which the colors are constant, or that are opaque,
-// is told by moments: a color that is constant or, between stops, linear.
+// Whether a color can be integrated by moments where it is visible under layers of constant or
+// opaque colors: it is constant or, between stops, linear.
 bool has_moments(const Paint& paint) {
   if (paint.kind == Paint::Kind::kConstant) return true;
-  return paint.kind == Paint::Kind::kLinearStops && most_passing(paint, paint.channels) == 0.0;
+  return paint.kind == Paint::Kind::kLinearStops && max_transmittance(paint, paint.channels) == 0.0;
 }
 
 Paint scaled(Paint paint, double factor) {
@@ -66,9 +69,9 @@ Paint scaled(Paint paint, double factor) {
   return paint;
 }
 
-class LayerMaker {
+class LayerBuilder {
  public:
-  LayerMaker(RasterMethod method, RasterLayers* out) : method_(method), out_(out) {}
+  LayerBuilder(RasterMethod method, RasterLayers* out) : method_(method), out_(out) {}
 
   void add(const Outline& outline, const Paint& paint) {
     if (outline.empty()) return;
@@ -79,14 +82,14 @@ class LayerMaker {
       return;
     }
     const bool is_constant = paint.kind == Paint::Kind::kConstant;
-    const bool joins = is_constant && together_ > 0 &&
-                       (together_ < kMostShapesTogether || method_ == RasterMethod::kWavelet) &&
+    const bool joins = is_constant && layer_shapes_ > 0 &&
+                       (layer_shapes_ < kMaxShapesPerLayer || method_ == RasterMethod::kWavelet) &&
                        out_->layers.back().paint.constant == paint.constant;
     if (!joins) {
       out_->layers.push_back({{}, paint});
-      together_ = 0;
+      layer_shapes_ = 0;
     }
-    together_ = is_constant ? together_ + 1 : 0;
+    layer_shapes_ = is_constant ? layer_shapes_ + 1 : 0;
     out_->layers.back().edges.add(outline, method_ == RasterMethod::kScanline);
   }
 
@@ -98,38 +101,38 @@ class LayerMaker {
  private:
   RasterMethod method_;
   RasterLayers* out_;
-  int together_ = 0;  // shapes in the last layer, where that is of one color
+  int layer_shapes_ = 0;  // shapes in the last layer, if it has one constant color
 };
 
-// A shape by itself: its outline as it winds once, where that can be told.
-struct Single {
+// A shape by itself, and its resolved outline.
+struct ResolvedShape {
   std::optional<Outline> changed;
   bool is_clear = true;
-  bool is_told = false;  // whether it was looked for
+  bool was_tried = false;  // whether resolving was tried
 };
 
-// Shapes that are apart from all others.
+// Shapes whose boxes overlap, directly or via others.
 struct Group {
-  std::vector<std::uint32_t> shapes;  // numbers, from the lowest
-  /// Where they are not beside each other, so that they only have to be added.
+  std::vector<std::uint32_t> shapes;  // indices, from the lowest
+  /// Whether shapes cover each other; otherwise they only have to be added.
   bool is_covered = false;
-  /// Where they are then put over each other pixel by pixel.
+  /// If they cover each other: whether they are composited by pixel.
   bool is_composited = false;
-  /// What is seen of them then, where that can be told.
+  /// If they cover each other: their visible pieces, if these could be found.
   std::optional<std::vector<VisiblePiece>> pieces;
 };
 
-class LayerFinder {
+class LayerPlanner {
  public:
-  LayerFinder(std::span<const Shape> shapes, const RasterOptions& options)
-      : shapes_(shapes), options_(options), singles_(shapes.size()) {}
+  LayerPlanner(std::span<const Shape> shapes, const RasterOptions& options)
+      : shapes_(shapes), options_(options), resolved_(shapes.size()) {}
 
-  // Looks for what is seen of shapes that cover each other, from a number on.
-  void find_covered(std::uint32_t first, const Progress& progress) {
+  // Prepares shapes that cover each other, from index `first` on.
+  void prepare_covered(std::uint32_t first, const Progress& progress) {
     group_shapes(first);
     if (groups_.empty()) return;
-    // Large groups take all threads one after another, as only the one that called can be told to
-    // stop; the others one each.
+    // Cancellation is only seen by the calling thread. So large groups run one after another with
+    // all threads, and small ones in parallel with one thread each.
     constexpr std::size_t kLargeSegments = 4096;
     std::vector<std::size_t> small;
     std::vector<std::size_t> large;
@@ -142,90 +145,92 @@ class LayerFinder {
     }
     const auto groups = static_cast<double>(groups_.size());
     for (std::size_t i = 0; i < large.size(); ++i) {
-      const auto done = static_cast<double>(i);
+      const auto finished = static_cast<double>(i);
       find_pieces(&groups_[large[i]], options_.threads,
-                  progress.part(done / groups, (done + 1.0) / groups));
+                  progress.part(finished / groups, (finished + 1.0) / groups));
     }
     parallel_for(static_cast<std::int64_t>(small.size()), options_.threads,
                  progress.part(static_cast<double>(large.size()) / groups, 1.0),
                  [&](std::int64_t i) { find_pieces(&groups_[small[i]], 1, {}); });
   }
 
-  // The same of shapes that are added.
-  void find_added(const Progress& progress) {
+  // Prepares shapes that are added.
+  void prepare_added(const Progress& progress) {
     groups_.resize(shapes_.size());
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) groups_[i].shapes = {i};
-    // Only the thread that called reports, which one shape by itself stays on.
+    // Only the calling thread reports progress, and a single shape runs on it.
     const Progress within = shapes_.size() == 1 ? progress : Progress();
     parallel_for(static_cast<std::int64_t>(shapes_.size()), options_.threads, progress,
-                 [&](std::int64_t i) { find_single(static_cast<std::uint32_t>(i), within); });
+                 [&](std::int64_t i) { resolve_shape(static_cast<std::uint32_t>(i), within); });
   }
 
   void add_to(std::span<const Paint> paints, RasterLayers* out) {
-    LayerMaker maker(options_.method, out);
+    LayerBuilder builder(options_.method, out);
     std::vector<std::uint32_t> composited;
     std::vector<std::uint32_t> stacked;
     for (Group& group : groups_) {
       if (group.is_covered) {
         if (!group.pieces) {
-          auto& numbers = group.is_composited ? composited : stacked;
-          numbers.insert(numbers.end(), group.shapes.begin(), group.shapes.end());
+          auto& indices = group.is_composited ? composited : stacked;
+          indices.insert(indices.end(), group.shapes.begin(), group.shapes.end());
           continue;
         }
         for (VisiblePiece& piece : *group.pieces) {
-          double passing = 1.0;
-          for (const std::uint32_t veil : piece.veils) {
-            passing *= 1.0 - shapes_[group.shapes[veil]].paint.constant[kAlpha];
+          double transmittance = 1.0;
+          for (const std::uint32_t overlay : piece.overlays) {
+            transmittance *= 1.0 - shapes_[group.shapes[overlay]].paint.constant[kAlpha];
           }
-          maker.add(maker.keep(std::move(piece.outline)),
-                    scaled(paints[group.shapes[piece.layer]], passing));
+          builder.add(builder.keep(std::move(piece.outline)),
+                      scaled(paints[group.shapes[piece.layer]], transmittance));
         }
         continue;
       }
       for (const std::uint32_t i : group.shapes) {
-        Single& single = singles_[i];
+        ResolvedShape& resolved = resolved_[i];
         const bool is_radial = shapes_[i].paint.kind == Paint::Kind::kRadialStops;
         if (is_radial && options_.overlap == Overlap::kCover && may_composite_) {
           composited.push_back(i);
-        } else if (single.is_clear && !is_radial) {
-          maker.add(single.changed ? maker.keep(*std::move(single.changed)) : shapes_[i].outline,
-                    paints[i]);
+        } else if (resolved.is_clear && !is_radial) {
+          builder.add(
+              resolved.changed ? builder.keep(*std::move(resolved.changed)) : shapes_[i].outline,
+              paints[i]);
         } else if (options_.overlap == Overlap::kAdd) {
-          std::vector<std::uint32_t> numbers = {i};
-          add_stack(&numbers, &maker, out);
+          std::vector<std::uint32_t> indices = {i};
+          add_stack(&indices, &builder, out);
         } else {
           stacked.push_back(i);
         }
       }
     }
-    add_stack(&composited, &maker, out);
+    add_stack(&composited, &builder, out);
     if (!composited.empty()) out->stacks.back().is_composited = true;
-    add_stack(&stacked, &maker, out);
+    add_stack(&stacked, &builder, out);
   }
 
  private:
-  // Several groups in one, so that it has the steps of one, however many groups there are.
-  void add_stack(std::vector<std::uint32_t>* numbers, LayerMaker* maker, RasterLayers* out) {
-    if (numbers->empty()) return;
-    std::sort(numbers->begin(), numbers->end());
+  // Combines several groups to one stack, so that they share one limit of steps.
+  void add_stack(std::vector<std::uint32_t>* indices, LayerBuilder* builder, RasterLayers* out) {
+    if (indices->empty()) return;
+    std::sort(indices->begin(), indices->end());
     std::vector<StackShape> shapes;
-    for (const std::uint32_t i : *numbers) {
+    for (const std::uint32_t i : *indices) {
       const Shape& shape = shapes_[i];
-      Single& single = singles_[i];
-      const bool winds_once = shape.winds_once || (single.is_told && single.is_clear);
+      ResolvedShape& resolved = resolved_[i];
+      const bool winds_once = shape.winds_once || (resolved.was_tried && resolved.is_clear);
       const Outline& outline =
-          single.changed ? maker->keep(*std::move(single.changed)) : shape.outline;
+          resolved.changed ? builder->keep(*std::move(resolved.changed)) : shape.outline;
       shapes.push_back({&outline, shape.fill_rule, &shape.paint, winds_once});
     }
-    out->stacks.push_back(stack_of(shapes));
+    out->stacks.push_back(make_stack(shapes));
   }
 
-  // Whether shapes may be put over each other pixel by pixel: those that cover the image very often
-  // take less in other ways.
+  // Whether shapes may be composited by pixel: other methods are faster for shapes that cover the
+  // image many times.
   bool may_composite(std::span<const Box2> boxes) const {
     if (options_.method != RasterMethod::kScanline || options_.filter != "box") return false;
-    if (std::max(options_.width, options_.height) > kMostBoxPixels) return false;
-    constexpr double kMostImages = 64.0;
+    if (std::max(options_.width, options_.height) > kMaxBoxImageSide) return false;
+    // The ratio of the total area of boxes to the image.
+    constexpr double kMaxCoveredImages = 64.0;
     double area = 0.0;
     for (const Box2& box : boxes) {
       if (box.empty()) continue;
@@ -233,12 +238,12 @@ class LayerFinder {
       const double height = std::min(box.high.y, options_.height + 0.0) - std::max(box.low.y, 0.0);
       area += std::max(width, 0.0) * std::max(height, 0.0);
     }
-    return area <= kMostImages * options_.width * options_.height;
+    return area <= kMaxCoveredImages * options_.width * options_.height;
   }
 
   void group_shapes(std::uint32_t first) {
     if (options_.method == RasterMethod::kWavelet) {
-      // That leaves contours open where shapes do not cover each other.
+      // Open contours stay open if shapes do not cover each other, so all shapes form one group.
       groups_.push_back({{}, true, false, {}});
       for (std::uint32_t i = first; i < shapes_.size(); ++i) groups_[0].shapes.push_back(i);
       return;
@@ -248,18 +253,19 @@ class LayerFinder {
       if (!shapes_[i].outline.empty()) boxes[i] = control_box(shapes_[i].outline);
     }
     may_composite_ = may_composite(boxes);
-    for (std::vector<std::uint32_t>& group : groups_apart(boxes)) {
+    for (std::vector<std::uint32_t>& group : overlapping_groups(boxes)) {
       groups_.push_back({std::move(group), false, false, {}});
     }
   }
 
-  void find_single(std::uint32_t i, const Progress& progress) {
+  void resolve_shape(std::uint32_t i, const Progress& progress) {
     const Shape& shape = shapes_[i];
     if (shape.winds_once) return;
     if (options_.method == RasterMethod::kWavelet && is_left_open(shape.outline)) return;
-    Single& single = singles_[i];
-    single.is_told = true;
-    single.is_clear = resolve_soon(shape.outline, shape.fill_rule, progress, &single.changed);
+    ResolvedShape& resolved = resolved_[i];
+    resolved.was_tried = true;
+    resolved.is_clear =
+        resolve_within_budget(shape.outline, shape.fill_rule, progress, &resolved.changed);
   }
 
   void find_pieces(Group* group, int threads, const Progress& progress) {
@@ -267,8 +273,8 @@ class LayerFinder {
       const auto count = static_cast<std::int64_t>(group->shapes.size());
       const Progress within = count == 1 ? progress : Progress();
       parallel_for(count, threads, progress.part(0.0, 0.1),
-                   [&](std::int64_t i) { find_single(group->shapes[i], within); });
-      group->is_covered = count > 1 && !are_beside(group->shapes);
+                   [&](std::int64_t i) { resolve_shape(group->shapes[i], within); });
+      group->is_covered = count > 1 && !are_disjoint(group->shapes);
     }
     if (!group->is_covered) return;
     group->is_composited = may_composite_;
@@ -280,32 +286,32 @@ class LayerFinder {
     std::vector<CoveringLayer> layers;
     for (const std::uint32_t i : group->shapes) {
       const Paint& paint = shapes_[i].paint;
-      layers.push_back(
-          {&shapes_[i].outline, shapes_[i].fill_rule, most_passing(paint, paint.channels) == 0.0});
+      layers.push_back({&shapes_[i].outline, shapes_[i].fill_rule,
+                        max_transmittance(paint, paint.channels) == 0.0});
     }
     group->pieces =
         visible_pieces(layers, ArrangementEffort::kBounded, threads, progress.part(0.1, 1.0));
   }
 
-  bool are_beside(std::span<const std::uint32_t> numbers) const {
+  bool are_disjoint(std::span<const std::uint32_t> indices) const {
     std::vector<const Outline*> outlines;
-    for (const std::uint32_t i : numbers) {
-      const Single& single = singles_[i];
-      if (!single.is_clear) return false;
-      outlines.push_back(single.changed ? &*single.changed : &shapes_[i].outline);
+    for (const std::uint32_t i : indices) {
+      const ResolvedShape& resolved = resolved_[i];
+      if (!resolved.is_clear) return false;
+      outlines.push_back(resolved.changed ? &*resolved.changed : &shapes_[i].outline);
     }
-    return are_side_by_side(outlines);
+    return have_disjoint_interiors(outlines);
   }
 
   std::span<const Shape> shapes_;
   const RasterOptions& options_;
-  std::vector<Single> singles_;
+  std::vector<ResolvedShape> resolved_;
   bool may_composite_ = false;
   std::vector<Group> groups_;
 };
 
-// Whether a shape is one color all over an image, and so far around it that a filter sees no more.
-bool is_behind_all(const Shape& shape, const RasterOptions& options) {
+// Whether a shape covers the whole image, and a margin as wide as any filter, with one color.
+bool covers_image(const Shape& shape, const RasterOptions& options) {
   if (shape.paint.kind != Paint::Kind::kConstant || options.method == RasterMethod::kWavelet) {
     return false;
   }
@@ -317,11 +323,11 @@ bool is_behind_all(const Shape& shape, const RasterOptions& options) {
   for (std::size_t i = 0; i < 4; ++i) {
     const Point2 side = points[(i + 1) % 4] - points[i];
     const Point2 next = points[(i + 2) % 4] - points[(i + 1) % 4];
-    // Sides along one axis in turns; with those of no length it is no rectangle around anything.
+    // The sides must alternate between both axes; sides without length enclose nothing.
     if (!((side.x == 0.0 && next.y == 0.0) || (side.y == 0.0 && next.x == 0.0))) return false;
   }
-  constexpr double kFarthestSeen = 16.0;
-  const double margin = options.filter == "box" ? 0.0 : kFarthestSeen;
+  constexpr double kMaxFilterRadius = 16.0;
+  const double margin = options.filter == "box" ? 0.0 : kMaxFilterRadius;
   const Box2 box = control_box(outline);
   return box.low.x <= -margin && box.low.y <= -margin && box.high.x >= options.width + margin &&
          box.high.y >= options.height + margin;
@@ -339,28 +345,28 @@ RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& opt
   out.channels = channel_count(shapes, options);
   std::copy(options.background.begin(), options.background.end(), out.background.begin());
   const bool covers = options.overlap == Overlap::kCover && shapes.size() > 1;
-  // Pages mostly have one behind all that is on them.
+  // Pages often begin with a shape behind everything else.
   std::uint32_t first = 0;
-  for (; covers && first < shapes.size() && is_behind_all(shapes[first], options); ++first) {
+  for (; covers && first < shapes.size() && covers_image(shapes[first], options); ++first) {
     const ChannelValues& color = shapes[first].paint.constant;
-    const double passing = has_alpha(shapes[first].paint) ? 1.0 - color[kAlpha] : 0.0;
+    const double transmittance = has_alpha(shapes[first].paint) ? 1.0 - color[kAlpha] : 0.0;
     for (int c = 0; c < out.channels; ++c) {
-      out.background[c] = passing * out.background[c] + color[c];
+      out.background[c] = transmittance * out.background[c] + color[c];
     }
   }
   std::vector<Paint> paints;
   for (const Shape& shape : shapes) {
     paints.push_back(shape.paint);
-    take_background(out.background, &paints.back());
+    subtract_background(out.background, &paints.back());
   }
-  const Progress progress = options.progress.part(0.0, kLayersShare);
-  LayerFinder finder(shapes, options);
+  const Progress progress = options.progress.part(0.0, kLayersProgressShare);
+  LayerPlanner planner(shapes, options);
   if (covers) {
-    finder.find_covered(first, progress);
+    planner.prepare_covered(first, progress);
   } else {
-    finder.find_added(progress);
+    planner.prepare_added(progress);
   }
-  finder.add_to(paints, &out);
+  planner.add_to(paints, &out);
   return out;
 }
 

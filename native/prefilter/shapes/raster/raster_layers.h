@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Shapes made ready: outlines that wind once round what they fill, colors that only have to be
-// added.
+// Prepares shapes for rasterization: outlines that wind once around their filled part, with colors
+// that only need to be added.
 #pragma once
 
 #include <deque>
@@ -14,8 +14,8 @@
 
 namespace prefilter {
 
-/// Outlines of one paint. Constant ones of several shapes are summed up together: what they share
-/// then cancels.
+/// Outlines with one paint. Shapes of equal constant colors share a layer, so that common edges
+/// cancel.
 struct RasterLayer {
   EdgeList edges;
   Paint paint;  // constant or linear
@@ -27,19 +27,19 @@ inline bool is_constant(const RasterLayer& layer) {
 
 struct RasterLayers {
   std::vector<RasterLayer> layers;
-  std::deque<LayerStack> stacks;  // to be added too
+  std::deque<LayerStack> stacks;  // added to the image, too
   ChannelValues background{};
   int channels = 1;
-  std::deque<Outline> outlines;  // what the edges are of
+  std::deque<Outline> outlines;  // storage for the edges' outlines
 };
 
-/// How much of the time of rasterizing it takes to make the layers, as progress tells it.
-inline constexpr double kLayersShare = 0.3;
+/// Share of the progress of rasterizing that preparing the layers takes.
+inline constexpr double kLayersProgressShare = 0.3;
 
-/// The channels of the image: the shapes', or where there are none, the background's.
+/// Number of channels of the image: of the shapes, or of the background if there are none.
 int channel_count(std::span<const Shape> shapes, const RasterOptions& options);
 
-/// The sum of all layers and the background is the image. The shapes must outlive it.
+/// Layers whose sum with the background is the image. The shapes must outlive it.
 RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& options);
 
 }  // namespace prefilter

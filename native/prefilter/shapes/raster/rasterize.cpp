@@ -2,8 +2,8 @@
 
 // Section 2.2: the image of shapes, filtered in closed form.
 //
-// Bands of rows are made one by one, each from the segments that pass it, so that what is held
-// beside the image is a band; how high one is follows from the image alone.
+// Rows are processed in bands, each from the segments that cross it, so that beside the image only
+// a band per thread is in memory. The height of bands depends only on the image.
 
 #include "prefilter/shapes/rasterize.h"
 
@@ -51,7 +51,7 @@ void check_options(std::span<const Shape> shapes, const RasterOptions& options,
                     "; all must have the same number");
     }
     for (const Point2& point : shapes[i].outline.points()) {
-      if (!(std::abs(point.x) <= kFarthestPixel && std::abs(point.y) <= kFarthestPixel)) {
+      if (!(std::abs(point.x) <= kMaxPixelCoordinate && std::abs(point.y) <= kMaxPixelCoordinate)) {
         throw_invalid(who + " has a point that is not finite, or farther than 1e9 pixels away");
       }
     }
@@ -76,7 +76,7 @@ void check_wavelet_options(std::span<const Shape> shapes, const RasterOptions& o
   }
 }
 
-// Where pixels go: floats, or else bytes.
+// The target of pixels: either floats or bytes.
 struct PixelRows {
   float* floats = nullptr;
   std::uint8_t* bytes = nullptr;
@@ -91,39 +91,39 @@ PixelRows rows_of(Image* image) {
   return {image->data.data(), nullptr, image->width, image->height, image->channels};
 }
 
-// For shapes of one color.
+// Working memory for shapes of constant color.
 template <int N>
-struct Covered {
-  Covered(const CellFilter& filter, int width) : moments(filter, width) {}
+struct CoverageBuffers {
+  CoverageBuffers(const CellFilter& filter, int width) : moments(filter, width) {}
 
   MomentCells<N> cells;
   MomentRows<N> moments;
   CoverageRows rows;
-  int first_row = -1;  // of the band that it is ready for
+  int first_row = -1;  // of the band it was prepared for
 };
 
-// For shapes of which the color is linear.
+// Working memory for shapes of linear color.
 template <int M>
-struct Painted {
-  Painted(const CellFilter& filter, int width) : rows(filter, width) {}
+struct ColorBuffers {
+  ColorBuffers(const CellFilter& filter, int width) : rows(filter, width) {}
 
   MomentCells<M> cells;
   PaintedRows<M> rows;
   int first_row = -1;
 };
 
-// Makes bands of rows, one after another, with memory that is kept.
+// Renders bands of rows one after another, reusing memory.
 template <int N>
-class BandMaker {
+class BandRenderer {
  public:
-  BandMaker(const RasterLayers& job, const CellFilter& filter, const PixelRows& pixels)
+  BandRenderer(const RasterLayers& job, const CellFilter& filter, const PixelRows& pixels)
       : job_(job), filter_(filter), pixels_(pixels) {}
 
   void make(int first_row, int end_row) {
     first_row_ = first_row;
     end_row_ = end_row;
     values_.reset(pixels_.width, end_row - first_row, job_.channels, job_.background);
-    // First, as it goes over what is there.
+    // Composited stacks go first: they overwrite the band.
     for (const LayerStack& stack : job_.stacks) {
       if (stack.is_composited && is_in_band(stack)) add_composited(stack);
     }
@@ -157,13 +157,14 @@ class BandMaker {
   }
 
   void add_constant(const RasterLayer& layer) {
-    // Of the filters the box alone is of degree 0.
-    if (N == 0 && pixels_.width <= kMostBoxPixels && pixels_.height <= kMostBoxPixels) {
+    // The box filter is the only one of degree 0.
+    if (N == 0 && pixels_.width <= kMaxBoxImageSide && pixels_.height <= kMaxBoxImageSide) {
       add_box(layer);
       return;
     }
-    if (covered_ == nullptr) covered_ = std::make_unique<Covered<N>>(filter_, pixels_.width);
-    auto& [cells, moments, rows, first_row] = *covered_;
+    if (coverage_buffers_ == nullptr)
+      coverage_buffers_ = std::make_unique<CoverageBuffers<N>>(filter_, pixels_.width);
+    auto& [cells, moments, rows, first_row] = *coverage_buffers_;
     if (first_row != first_row_) {
       first_row = first_row_;
       cells.begin_band(filter_, pixels_.width, first_row_, end_row_);
@@ -185,7 +186,7 @@ class BandMaker {
 
   void add_box(const RasterLayer& layer) {
     if (box_ == nullptr) box_ = std::make_unique<BoxCoverage>();
-    // No more rows than it is in, as all of them are gone through.
+    // Limits the band to the rows of the layer, as all rows are visited.
     const double low = std::max<double>(first_row_, std::floor(layer.edges.low()));
     const double high = std::min<double>(end_row_, std::ceil(layer.edges.high()));
     if (!(low < high)) return;
@@ -197,7 +198,7 @@ class BandMaker {
     };
     box_->take(
         [&](int row, int x, int count, const std::uint32_t* steps) {
-          // Blocks mostly reach beyond the shape.
+          // Blocks often extend beyond the shape.
           int begin = 0;
           while (begin < count && steps[begin] == 0) ++begin;
           while (count > begin && steps[count - 1] == 0) --count;
@@ -213,13 +214,13 @@ class BandMaker {
 
   void add_composited(const LayerStack& stack) {
     CompositedRows composited(stack, pixels_.width, job_.channels);
-    composited.put_over(first_row_, end_row_, job_.background, &values_);
+    composited.composite_over(first_row_, end_row_, job_.background, &values_);
     StackRows<N> rows(stack, filter_, job_.background, job_.channels, pixels_.width,
                       pixels_.height);
     rows.add_marked(first_row_, end_row_, composited, &values_);
   }
 
-  // Whether a layer may have a share in the band.
+  // Whether a layer may affect the band.
   bool is_in_band(const EdgeList& edges) const {
     return filter_.to_cell(edges.high()) >= filter_.first_cell(first_row_) &&
            filter_.to_cell(edges.low()) <= filter_.first_cell(end_row_ - 1) + filter_.taps;
@@ -236,8 +237,9 @@ class BandMaker {
   }
 
   void add_painted(const RasterLayer& layer) {
-    if (painted_ == nullptr) painted_ = std::make_unique<Painted<N + 1>>(filter_, pixels_.width);
-    auto& [cells, rows, first_row] = *painted_;
+    if (color_buffers_ == nullptr)
+      color_buffers_ = std::make_unique<ColorBuffers<N + 1>>(filter_, pixels_.width);
+    auto& [cells, rows, first_row] = *color_buffers_;
     if (first_row != first_row_) {
       first_row = first_row_;
       cells.begin_band(filter_, pixels_.width, first_row_, end_row_);
@@ -252,54 +254,55 @@ class BandMaker {
   PixelRows pixels_;
   int first_row_ = 0;
   int end_row_ = 0;
-  std::unique_ptr<Covered<N>> covered_;
-  std::unique_ptr<Painted<N + 1>> painted_;
+  std::unique_ptr<CoverageBuffers<N>> coverage_buffers_;
+  std::unique_ptr<ColorBuffers<N + 1>> color_buffers_;
   std::unique_ptr<BoxCoverage> box_;
   BandValues values_;
 };
 
-// Makers for as many bands as are made at once.
+// A pool of renderers, one per concurrent band.
 template <int N>
-class BandMakers {
+class BandRendererPool {
  public:
-  using Maker = std::unique_ptr<BandMaker<N>>;
+  using Renderer = std::unique_ptr<BandRenderer<N>>;
 
-  // Calls use(maker) with one that nobody else has.
+  // Calls use(renderer) with one that no other thread uses.
   template <typename Make, typename Use>
-  void with_one(const Make& make, const Use& use) {
-    Maker maker = taken();
-    if (maker == nullptr) maker = make();
-    use(maker.get());
+  void with_renderer(const Make& make, const Use& use) {
+    Renderer renderer = take_idle();
+    if (renderer == nullptr) renderer = make();
+    use(renderer.get());
     const std::lock_guard<std::mutex> lock(mutex_);
-    idle_.push_back(std::move(maker));
+    idle_.push_back(std::move(renderer));
   }
 
  private:
-  Maker taken() {
+  Renderer take_idle() {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (idle_.empty()) return nullptr;
-    Maker maker = std::move(idle_.back());
+    Renderer renderer = std::move(idle_.back());
     idle_.pop_back();
-    return maker;
+    return renderer;
   }
 
   std::mutex mutex_;
-  std::vector<Maker> idle_;
+  std::vector<Renderer> idle_;
 };
 
 template <int N>
 void make_bands(const RasterLayers& job, const CellFilter& filter, const RasterOptions& options,
                 const PixelRows& pixels) {
   constexpr int kBandValues = 1 << 16;
-  constexpr int kLeastRows = 16;
-  const int rows = std::clamp(kBandValues / (options.width * job.channels), kLeastRows, 256);
-  BandMakers<N> makers;
-  parallel_ranges(options.height, rows, options.threads, options.progress.part(kLayersShare, 1.0),
+  constexpr int kMinRows = 16;
+  const int rows = std::clamp(kBandValues / (options.width * job.channels), kMinRows, 256);
+  BandRendererPool<N> renderers;
+  parallel_ranges(options.height, rows, options.threads,
+                  options.progress.part(kLayersProgressShare, 1.0),
                   [&](std::int64_t begin, std::int64_t end) {
-                    makers.with_one(
-                        [&] { return std::make_unique<BandMaker<N>>(job, filter, pixels); },
-                        [&](BandMaker<N>* maker) {
-                          maker->make(static_cast<int>(begin), static_cast<int>(end));
+                    renderers.with_renderer(
+                        [&] { return std::make_unique<BandRenderer<N>>(job, filter, pixels); },
+                        [&](BandRenderer<N>* renderer) {
+                          renderer->make(static_cast<int>(begin), static_cast<int>(end));
                         });
                   });
 }
@@ -325,7 +328,7 @@ void make_all_bands(const RasterLayers& job, const CellFilter& filter, const Ras
   }
 }
 
-// Adds stacks to an image whose cells are squares of 2^cell_depth pixels: the means of pixels.
+// Adds stacks to an image whose cells are squares of 2^cell_depth pixels, as means over cells.
 void add_stack_means(const RasterLayers& stacks, int cell_depth, RasterOptions options,
                      Image* image) {
   const int side = 1 << cell_depth;
@@ -356,7 +359,7 @@ void add_stack_means(const RasterLayers& stacks, int cell_depth, RasterOptions o
   }
 }
 
-// What both kinds of images have in common: checked, and made ready.
+// Validated options and prepared layers, for images of floats and of bytes.
 struct Job {
   const CellFilter* filter = nullptr;
   RasterLayers layers;
@@ -378,7 +381,8 @@ Job job_of(std::span<const Shape> shapes, const RasterOptions& options, double v
 void add_wavelets(RasterLayers* job, const RasterOptions& options, Image* image) {
   const int most = wavelet_depth(options.width, options.height);
   const int depth = options.depth < 0 ? most : options.depth;
-  add_up_wavelets(*job, depth, options.threads, options.progress.part(kLayersShare, 1.0), image);
+  add_up_wavelets(*job, depth, options.threads, options.progress.part(kLayersProgressShare, 1.0),
+                  image);
   if (job->stacks.empty()) return;
   RasterLayers stacks;
   stacks.channels = job->channels;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// With q the place before `to_shape`, from the center, the radius r = |q| has the slope q / r, and
-// the second derivatives (I - q q^T / r^2) / r.
+// Let q be the position before `to_shape`, relative to the center. The radius r = |q| has the
+// gradient q / r and the second derivatives (I - q q^T / r^2) / r.
 #include "prefilter/shapes/raster/round_gradient.h"
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 namespace prefilter {
 namespace {
 
-// The center is so many cells away at least: what the fourth derivatives of the radius add to its
-// mean, 0.002 over its cube in cells, is then below 2e-5 of a cell.
-constexpr double kFarCells = 5.0;
-// From a cell's center to the farthest of the places where colors that are not smooth are told.
-constexpr double kFarthestNode = 0.54772255750516607;
+// Least distance from the center in cells. The fourth derivatives of the radius change its mean by
+// 0.002 over the cube of the distance, which is then below 2e-5 of a cell.
+constexpr double kMinCenterDistance = 5.0;
+// Distance from a cell's center to the corner nodes of the 3 x 3 Gauss rule, sqrt(0.3).
+constexpr double kMaxNodeDistance = 0.54772255750516607;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ std::optional<RoundGradient> RoundGradient::of(const Paint& paint, double side) 
   round.size_ =
       side * std::sqrt(dot(round.along_x_, round.along_x_) + dot(round.along_y_, round.along_y_));
   if (!std::isfinite(round.size_ * round.per_radius_)) return std::nullopt;
-  round.margin_ = kFarthestNode * round.size_ * std::abs(round.per_radius_);
+  round.margin_ = kMaxNodeDistance * round.size_ * std::abs(round.per_radius_);
   const auto& stops = paint.stops;
   round.add_stretch(-HUGE_VAL, stops.front().offset, stops.front().value, stops.front().value);
   for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
@@ -63,7 +63,7 @@ void RoundGradient::add_stretch(double low, double high, const ChannelValues& be
 }
 
 const RoundGradient::Stretch* RoundGradient::find(double radius) const {
-  if (!(radius >= kFarCells * size_)) return nullptr;
+  if (!(radius >= kMinCenterDistance * size_)) return nullptr;
   const double offset = (radius - start_radius_) * per_radius_;
   for (const Stretch& stretch : stretches_) {
     if (offset - margin_ >= stretch.low && offset + margin_ <= stretch.high) return &stretch;
@@ -72,7 +72,7 @@ const RoundGradient::Stretch* RoundGradient::find(double radius) const {
 }
 
 ChannelValues RoundGradient::at(const Point2& point) const {
-  const Point2 q = place_of(point);
+  const Point2 q = position_of(point);
   const double offset = (std::sqrt(dot(q, q)) - start_radius_) * per_radius_;
   const auto stretch = std::find_if(stretches_.begin(), stretches_.end() - 1,
                                     [&](const Stretch& each) { return offset < each.high; });
@@ -84,22 +84,22 @@ ChannelValues RoundGradient::at(const Point2& point) const {
   return value;
 }
 
-// The mean over a cell of what is quadratic: at its center, and a 24th of the second derivatives.
-// Two cells at once, of which the second may be one too many.
+// The mean over a cell of a quadratic function is its value at the center plus 1/24 of the sum of
+// its second derivatives. Computes two cells at once; the second may be past the last.
 template <int C>
 int RoundGradient::add_channels(const Point2& center, int count, double share, double* out) const {
   const Point2 step = side_ * along_x_;
   const Point2 across = side_ * along_y_;
   const double squares = dot(step, step) + dot(across, across);
-  const Point2 first = place_of(center);
+  const Point2 first = position_of(center);
   ChannelPairs<C> constant{};
   ChannelPairs<C> slope{};
-  const double near = kFarCells * size_;
-  // Copies, as what is written might otherwise be these.
+  const double near = kMinCenterDistance * size_;
+  // Local copies, which `out` cannot alias.
   const double start_radius = start_radius_;
   const double per_radius = per_radius_;
   const double per_bend = per_radius_ / 24.0;
-  double low = HUGE_VAL;  // of offsets that are in the stretch
+  double low = HUGE_VAL;  // range of offsets in the stretch
   double high = -HUGE_VAL;
   const auto add = [&](int i, double mean) {
     add_pairs<C>([&](std::size_t pair) { return constant[pair] + mean * slope[pair]; },
@@ -111,7 +111,7 @@ int RoundGradient::add_channels(const Point2& center, int count, double share, d
     const DoublePair y = first.y + place * step.y;
     const DoublePair radius = sqrt(x * x + y * y);
     const DoublePair offset = (radius - start_radius) * per_radius;
-    // Not below 0 where the color is that of the stretch.
+    // Not negative where the current stretch applies.
     DoublePair inside = lower(lower(offset - low, high - offset), radius - near);
     if (!(inside[0] >= 0.0)) {
       const Stretch* stretch = find(radius[0]);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Layers are processed from the highest; winding numbers are propagated from cell to cell along the
+// left sides.
 #include "prefilter/shapes/raster/row_layers.h"
 
 #include <algorithm>
@@ -11,15 +13,15 @@
 namespace prefilter {
 namespace {
 
-// The logarithm of RowLayers::kLeastPassing, and a bit.
-constexpr double kLeastDepth = -16.2;
-// That of 1/1024: of what passes less in all, samples show nothing.
-constexpr double kLeastSampledDepth = -6.94;
+// Slightly below the logarithm of RowLayers::kMinTransmittance.
+constexpr double kMinLogTransmittance = -16.2;
+// log(1/1024): layers below this transmittance are invisible to sampling.
+constexpr double kMinSampledLogTransmittance = -6.94;
 
-// After so many layers that fill cells it is looked what they hide, all at once.
-constexpr int kLayersTogether = 16;
+// Occlusion is tested once per this many full layers.
+constexpr int kLayersPerOcclusionTest = 16;
 
-// The numbers of things by columns: of those in column c, the first is at [c].
+// Counting sort by column: column c's elements begin at first[c].
 template <typename T>
 void sort_by_columns(const std::vector<T>& things, int columns, std::vector<std::uint32_t>* first,
                      std::vector<T>* sorted) {
@@ -38,17 +40,17 @@ RowLayers::RowLayers(const LayerStack& stack, int channels) : full_(stack.layers
   for (const StackLayer& layer : stack.layers) {
     rules_.push_back(layer.fill_rule);
     are_cutters_.push_back(layer.is_cutter);
-    depths_.push_back(layer.is_cutter ? 0.0
-                                      : elementary::log(most_passing(*layer.paint, channels)));
+    log_transmittance_.push_back(
+        layer.is_cutter ? 0.0 : elementary::log(max_transmittance(*layer.paint, channels)));
   }
 }
 
-void RowLayers::make_row(int row, const OpenColumns& wanted, StackArcs* arcs) {
+void RowLayers::make_row(int row, const OpenColumns& requested, StackArcs* arcs) {
   for (const Change& change : changes_) full_.erase(change.layer);
   columns_ = arcs->window().end_column - arcs->window().first_column;
-  open_ = wanted;
-  depth_steps_.assign(static_cast<std::size_t>(columns_) + 1, 0.0);
-  layers_until_closing_ = kLayersTogether;
+  open_ = requested;
+  log_transmittance_steps_.assign(static_cast<std::size_t>(columns_) + 1, 0.0);
+  layers_until_test_ = kLayersPerOcclusionTest;
   arc_counts_.assign(static_cast<std::size_t>(columns_), 0);
   arcs_.clear();
   steps_.clear();
@@ -61,7 +63,7 @@ void RowLayers::make_row(int row, const OpenColumns& wanted, StackArcs* arcs) {
     const std::size_t first = arcs_.size();
     arcs->append(layer, open_, &arcs_);
     if (arcs_.size() > first) add_layer(layer.layer, first);
-    if (layers_until_closing_ <= 0) close_hidden();
+    if (layers_until_test_ <= 0) close_hidden();
   }
   sort_by_columns(records_, columns_, &first_record_, &sorted_records_);
   sort_by_columns(changes_, columns_, &first_change_, &sorted_changes_);
@@ -69,7 +71,7 @@ void RowLayers::make_row(int row, const OpenColumns& wanted, StackArcs* arcs) {
 
 void RowLayers::add_layer(std::uint32_t layer, std::size_t first_arc) {
   base_ = 0;
-  own_steps_.clear();
+  left_steps_.clear();
   full_end_ = -1;
   int column = 0;
   const std::size_t end = arcs_.size();
@@ -79,15 +81,15 @@ void RowLayers::add_layer(std::uint32_t layer, std::size_t first_arc) {
     while (i < end && arcs_[i].column == at) ++i;
     add_gap(layer, column, at);
     if (at >= 0 && open_.is_open(at)) add_cell(layer, at, first, i);
-    leave(std::span(arcs_).subspan(first, i - first));
+    update_windings(std::span(arcs_).subspan(first, i - first));
     column = at + 1;
   }
   add_gap(layer, column, columns_);
 }
 
-// Cells without arcs.
+// Handles the cells [begin, end), which have no arcs of the layer.
 void RowLayers::add_gap(std::uint32_t layer, int begin, int end) {
-  if (own_steps_.empty()) {
+  if (left_steps_.empty()) {
     if (is_filled(base_, rules_[layer])) add_full(layer, begin, end);
     return;
   }
@@ -96,13 +98,14 @@ void RowLayers::add_gap(std::uint32_t layer, int begin, int end) {
   }
 }
 
-// Whether no winding number can be 0 that is one along the left side, and those of arcs beside it.
+// Whether the winding number cannot be 0 anywhere: bounds it by the values along the left side and
+// the arcs' windings.
 bool RowLayers::is_filled_all_over(std::span<const StackArc> arcs, FillRule rule) const {
   if (rule != FillRule::kNonzero) return false;
   std::int64_t least = base_;
   std::int64_t most = base_;
   std::int64_t side = base_;
-  for (const SideStep& step : own_steps_) {
+  for (const SideStep& step : left_steps_) {
     side += step.winding;
     least = std::min(least, side);
     most = std::max(most, side);
@@ -120,7 +123,7 @@ void RowLayers::add_cell(std::uint32_t layer, int column, std::size_t first_arc,
   }
   arc_counts_[column] += static_cast<std::uint32_t>(arcs.size());
   const auto first_step = static_cast<std::uint32_t>(steps_.size());
-  steps_.insert(steps_.end(), own_steps_.begin(), own_steps_.end());
+  steps_.insert(steps_.end(), left_steps_.begin(), left_steps_.end());
   records_.push_back({layer, rules_[layer], column, base_, first_step,
                       static_cast<std::uint32_t>(steps_.size()),
                       static_cast<std::uint32_t>(first_arc), static_cast<std::uint32_t>(end_arc)});
@@ -136,11 +139,11 @@ void RowLayers::add_full(std::uint32_t layer, int begin, int end) {
     changes_.push_back({begin, layer, true});
     changes_.push_back({end, layer, false});
   }
-  if (full_end_ < 0) --layers_until_closing_;
+  if (full_end_ < 0) --layers_until_test_;
   full_end_ = end;
-  if (depths_[layer] >= kLeastDepth) {
-    depth_steps_[begin] += depths_[layer];
-    depth_steps_[end] -= depths_[layer];
+  if (log_transmittance_[layer] >= kMinLogTransmittance) {
+    log_transmittance_steps_[begin] += log_transmittance_[layer];
+    log_transmittance_steps_[end] -= log_transmittance_[layer];
     return;
   }
   for (int column = begin; column < end; column = open_.next(column + 1, end)) {
@@ -149,38 +152,39 @@ void RowLayers::add_full(std::uint32_t layer, int begin, int end) {
 }
 
 void RowLayers::close_hidden() {
-  layers_until_closing_ = kLayersTogether;
-  double depth = 0.0;
+  layers_until_test_ = kLayersPerOcclusionTest;
+  double log_transmittance = 0.0;
   for (int column = 0; column < columns_; ++column) {
-    depth += depth_steps_[column];
-    const bool is_sampled = arc_counts_[column] > kMostSweptArcs;
-    if (depth < (is_sampled ? kLeastSampledDepth : kLeastDepth) && open_.is_open(column)) {
+    log_transmittance += log_transmittance_steps_[column];
+    const bool is_sampled = arc_counts_[column] > kMaxSweptArcs;
+    if (log_transmittance < (is_sampled ? kMinSampledLogTransmittance : kMinLogTransmittance) &&
+        open_.is_open(column)) {
       open_.close(column);
     }
   }
 }
 
-// Sets the winding numbers along the side right of a cell.
-void RowLayers::leave(std::span<const StackArc> arcs) {
+// Updates the winding numbers to those along the right side of a cell.
+void RowLayers::update_windings(std::span<const StackArc> arcs) {
   for (const StackArc& arc : arcs) {
     if (arc.low.y <= -0.5) {
       base_ += arc.winding;
     } else {
-      own_steps_.push_back({arc.low.y, arc.winding});
+      left_steps_.push_back({arc.low.y, arc.winding});
     }
-    if (arc.high.y < 0.5) own_steps_.push_back({arc.high.y, -arc.winding});
+    if (arc.high.y < 0.5) left_steps_.push_back({arc.high.y, -arc.winding});
   }
-  std::sort(own_steps_.begin(), own_steps_.end(),
+  std::sort(left_steps_.begin(), left_steps_.end(),
             [](const SideStep& a, const SideStep& b) { return a.y < b.y; });
-  // What is level leaves no arcs, so that steps may go on through many cells.
+  // Horizontal edges leave no arcs, so steps may persist over many cells.
   next_steps_.clear();
-  for (std::size_t i = 0; i < own_steps_.size();) {
-    SideStep sum = own_steps_[i];
-    while (++i < own_steps_.size() && own_steps_[i].y == sum.y)
-      sum.winding += own_steps_[i].winding;
+  for (std::size_t i = 0; i < left_steps_.size();) {
+    SideStep sum = left_steps_[i];
+    while (++i < left_steps_.size() && left_steps_[i].y == sum.y)
+      sum.winding += left_steps_[i].winding;
     if (sum.winding != 0) next_steps_.push_back(sum);
   }
-  std::swap(own_steps_, next_steps_);
+  std::swap(left_steps_, next_steps_);
 }
 
 std::size_t RowLayers::arc_count(int column) const {

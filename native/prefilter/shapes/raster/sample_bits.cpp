@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Bit-parallel scan conversion on a shuffled 64 x 64 grid.
 #include "prefilter/shapes/raster/sample_bits.h"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ constexpr int kSide = SampleBits::kSide;
 constexpr int kCount = SampleBits::kCount;
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-// The numbers below 64, shuffled.
+// A fixed permutation of the integers below 64.
 constexpr std::array<int, kSide> shuffled(unsigned first, unsigned factor, unsigned shift) {
   std::array<int, kSide> numbers{};
   for (unsigned i = 0; i < kSide; ++i) {
@@ -32,19 +33,19 @@ constexpr std::array<int, kSide> shuffled(unsigned first, unsigned factor, unsig
   return numbers;
 }
 
-// How far a row is shifted to the right, and a column up, in parts of which 64 are a step.
+// Shifts of rows to the right and of columns upward, in 1/64 of a step.
 constexpr std::array<int, kSide> kRowShifts = shuffled(7, 43, 2);
 constexpr std::array<int, kSide> kColumnShifts = shuffled(29, 37, 3);
 
-constexpr std::array<float, kSide> places_of(const std::array<int, kSide>& shifts) {
-  std::array<float, kSide> places{};
-  for (int i = 0; i < kSide; ++i) places[i] = (static_cast<float>(shifts[i]) + 0.5F) / kSide;
-  return places;
+constexpr std::array<float, kSide> positions_of(const std::array<int, kSide>& shifts) {
+  std::array<float, kSide> positions{};
+  for (int i = 0; i < kSide; ++i) positions[i] = (static_cast<float>(shifts[i]) + 0.5F) / kSide;
+  return positions;
 }
 
-constexpr std::array<float, kSide> kRowPlaces = places_of(kRowShifts);
+constexpr std::array<float, kSide> kRowPositions = positions_of(kRowShifts);
 
-// The columns that are shifted by so much or more.
+// Columns shifted by at least this much.
 constexpr std::array<std::uint64_t, kSide + 1> kShiftedFrom = [] {
   std::array<std::uint64_t, kSide + 1> columns{};
   for (int shift = 0; shift <= kSide; ++shift) {
@@ -55,7 +56,7 @@ constexpr std::array<std::uint64_t, kSide + 1> kShiftedFrom = [] {
   return columns;
 }();
 
-// The columns from one on.
+// Columns from this one on.
 constexpr std::array<std::uint64_t, kSide + 1> kFrom = [] {
   std::array<std::uint64_t, kSide + 1> columns{};
   for (int c = 0; c < kSide; ++c) columns[c] = kAll << c;
@@ -64,12 +65,12 @@ constexpr std::array<std::uint64_t, kSide + 1> kFrom = [] {
 
 using Band = SampleBits::Band;
 
-// How many samples are below a height, where each has its own.
-int height_number(double y) {
+// Number of samples below a height; no two samples have the same height.
+int samples_below(double y) {
   return std::clamp(static_cast<int>(std::ceil((y + 0.5) * kCount - 0.5)), 0, kCount);
 }
 
-// The samples of a band to the right of a line that goes farther up than it goes aside.
+// Samples of a band to the right of a line with |dx| <= dy.
 void find_right_of_steep(Point2 low, Point2 high, const Band& band, SampleRows* right) {
   const double slope = (high.x - low.x) / (high.y - low.y);
   const int begin = band.first_row();
@@ -79,7 +80,7 @@ void find_right_of_steep(Point2 low, Point2 high, const Band& band, SampleRows* 
   const auto step = static_cast<float>(slope);
   std::array<std::int32_t, kSide> columns;
   for (int row = begin; row < end; ++row) {
-    const float column = first + step * static_cast<float>(row - begin) - kRowPlaces[row];
+    const float column = first + step * static_cast<float>(row - begin) - kRowPositions[row];
     columns[row] =
         static_cast<std::int32_t>(std::min(std::max(column, 0.0F), static_cast<float>(kSide)));
   }
@@ -88,7 +89,7 @@ void find_right_of_steep(Point2 low, Point2 high, const Band& band, SampleRows* 
   if (end - 1 > begin) (*right)[end - 1] &= band.columns(end - 1);
 }
 
-// The same for a line that goes farther aside: it has a height in each column.
+// Samples of a band to the right of a line with |dx| > dy, which has one height in each column.
 void find_right_of_flat(Point2 low, Point2 high, const Band& band, SampleRows* right) {
   const double slope = (high.y - low.y) / (high.x - low.x);
   const auto column_of = [](double x) {
@@ -101,14 +102,14 @@ void find_right_of_flat(Point2 low, Point2 high, const Band& band, SampleRows* r
   const auto step = static_cast<float>(slope * kSide);
   const auto least = static_cast<float>(band.low);
   const auto most = static_cast<float>(band.high);
-  std::array<std::int32_t, kSide> rows;  // the first above the line
+  std::array<std::int32_t, kSide> rows;  // the first row above the line
   for (int column = begin; column < end; ++column) {
     const float number = first + step * static_cast<float>(column - begin);
     rows[column] = (static_cast<std::int32_t>(std::min(std::max(number, least), most)) + kSide - 1 -
                     kColumnShifts[column]) >>
                    6;
   }
-  // Where rows begin to be on the right, or end to be.
+  // Rows at which samples enter or leave the region.
   std::array<std::uint64_t, kSide + 2> changes;
   const int first_row = band.first_row();
   const int end_row = band.end_row();
@@ -132,9 +133,9 @@ void find_right_of_flat(Point2 low, Point2 high, const Band& band, SampleRows* r
   }
 }
 
-// Sets the rows of a band to what is in it to the right of a line.
+// Finds the samples to the right of a line, in the band of its rows.
 Band find_right_of(Point2 low, Point2 high, SampleRows* right) {
-  const Band band{height_number(low.y), height_number(high.y)};
+  const Band band{samples_below(low.y), samples_below(high.y)};
   if (band.low >= band.high) return {};
   if (std::fabs(high.x - low.x) <= high.y - low.y) {
     find_right_of_steep(low, high, band, right);
@@ -144,14 +145,14 @@ Band find_right_of(Point2 low, Point2 high, SampleRows* right) {
   return band;
 }
 
-// The least and the most that winding numbers of a layer can be.
+// Bounds on the winding numbers of a layer.
 struct WindingRange {
   explicit WindingRange(const CellLayer& layer) : least(layer.base), most(layer.base) {
     for (const SideStep& step : layer.steps) add(step.winding);
     for (const StackArc& arc : layer.arcs) add(arc.winding);
   }
   void add(std::int64_t winding) { (winding < 0 ? least : most) += winding; }
-  // How many bits tell all of them from 0.
+  // Number of bits that distinguish all of them from 0.
   int bits() const {
     return static_cast<int>(
         std::bit_width(static_cast<std::uint64_t>(std::max(std::abs(least), std::abs(most)))));
@@ -161,8 +162,8 @@ struct WindingRange {
   std::int64_t most = 0;
 };
 
-// Adds a bit to two rows of samples at a time, or takes it; of as many planes as kPlanes says, or
-// else `count`.
+// Adds or subtracts one bit in the bit planes of winding numbers, two rows at a time, by ripple
+// carry. The number of planes is kPlanes or, if that is 0, `count`.
 template <bool kFalls, int kPlanes>
 void add_to_planes(const SampleRows& added, int first, int end, SampleRows* planes,
                    std::size_t count) {
@@ -181,8 +182,8 @@ void add_to_planes(const SampleRows& added, int first, int end, SampleRows* plan
   }
 }
 
-// The same for the rows of a band, beside which `added` changes. The bit is that of the first
-// plane.
+// Adds one bit, of the weight of the first plane, in the rows of a band. May clear rows of `added`
+// beside the band.
 template <bool kFalls>
 void add_bit(const SampleBits::Band& band, std::span<SampleRows> planes, SampleRows* added) {
   int first = band.first_row();
@@ -210,7 +211,7 @@ std::uint64_t SampleBits::Band::columns(int row) const {
          ~kShiftedFrom[std::clamp(high - row * kSide, 0, kSide)];
 }
 
-// Calls use(low, high) for lines that an arc is as good as.
+// Calls use(low, high) for lines that approximate an arc.
 template <typename Use>
 void SampleBits::for_lines(const StackArc& arc, const Point2& center, const Use& use) const {
   if (arc.curve == StackArc::kLine) {
@@ -219,8 +220,8 @@ void SampleBits::for_lines(const StackArc& arc, const Point2& center, const Use&
   }
   const StackCurve& curve = stack_arcs_.curve(arc);
   const ParametricCurve& whole = stack_arcs_.piece(curve).curve;
-  // A line where the middle of the arc is closer to it than a sample to the next.
-  constexpr int kMostLines = 8;
+  // One line suffices if the arc's middle is closer to it than the spacing of samples.
+  constexpr int kMaxLines = 8;
   const Point2 middle = whole.at(0.5 * (curve.t_begin + curve.t_end)) - center;
   const Point2 way = arc.high - arc.low;
   const double off = std::fabs(cross(way, middle - arc.low));
@@ -230,10 +231,10 @@ void SampleBits::for_lines(const StackArc& arc, const Point2& center, const Use&
   }
   const bool rises = whole.at(curve.t_begin).y < whole.at(curve.t_end).y;
   Point2 low = arc.low;
-  for (int i = 1; i <= kMostLines; ++i) {
-    const double share = static_cast<double>(rises ? i : kMostLines - i) / kMostLines;
+  for (int i = 1; i <= kMaxLines; ++i) {
+    const double share = static_cast<double>(rises ? i : kMaxLines - i) / kMaxLines;
     Point2 high = arc.high;
-    if (i < kMostLines) {
+    if (i < kMaxLines) {
       high = whole.at(curve.t_begin + share * (curve.t_end - curve.t_begin)) - center;
       high.y = std::clamp(high.y, low.y, arc.high.y);
     }
@@ -249,7 +250,7 @@ void SampleBits::fill_odd(const CellLayer& layer, const Point2& center) {
   };
   for (const SideStep& step : layer.steps) {
     if (step.winding % 2 == 0) continue;
-    const Band above{height_number(step.y), kCount};
+    const Band above{samples_below(step.y), kCount};
     for (int row = above.first_row(); row < kSide; ++row) filled_[row] ^= above.columns(row);
   }
   for (const StackArc& arc : layer.arcs) {
@@ -260,9 +261,9 @@ void SampleBits::fill_odd(const CellLayer& layer, const Point2& center) {
 }
 
 void SampleBits::add_winding(const Band& band, std::int32_t winding) {
-  auto left = static_cast<std::uint32_t>(std::abs(winding));
-  for (std::size_t first = 0; left != 0; ++first, left >>= 1) {
-    if ((left & 1) == 0) continue;
+  auto remaining = static_cast<std::uint32_t>(std::abs(winding));
+  for (std::size_t first = 0; remaining != 0; ++first, remaining >>= 1) {
+    if ((remaining & 1) == 0) continue;
     const auto planes = std::span(planes_).subspan(first);
     if (winding < 0) {
       add_bit<true>(band, planes, &right_);
@@ -272,10 +273,10 @@ void SampleBits::add_winding(const Band& band, std::int32_t winding) {
   }
 }
 
-void SampleBits::fill_wound(const CellLayer& layer, const Point2& center, int bits) {
+void SampleBits::fill_by_winding(const CellLayer& layer, const Point2& center, int bits) {
   planes_.resize(static_cast<std::size_t>(bits));
   for (SampleRows& plane : planes_) plane.fill(0);
-  // From step to step along the left side.
+  // The initial winding numbers follow the steps along the left side.
   std::int32_t winding = layer.base;
   Band band;
   const auto fill_to = [&](int end) {
@@ -289,7 +290,7 @@ void SampleBits::fill_wound(const CellLayer& layer, const Point2& center, int bi
     band.low = end;
   };
   for (const SideStep& step : layer.steps) {
-    fill_to(height_number(step.y));
+    fill_to(samples_below(step.y));
     winding += step.winding;
   }
   fill_to(kCount);
@@ -306,11 +307,11 @@ void SampleBits::fill_wound(const CellLayer& layer, const Point2& center, int bi
 
 const SampleRows& SampleBits::fill(const CellLayer& layer, const Point2& center) {
   const WindingRange range(layer);
-  // Where no number can be beyond 1 and -1, both rules fill the odd ones.
+  // If all winding numbers are -1, 0 or 1, both rules fill the odd ones.
   if (layer.fill_rule == FillRule::kEvenOdd || (range.least >= -1 && range.most <= 1)) {
     fill_odd(layer, center);
   } else {
-    fill_wound(layer, center, range.bits());
+    fill_by_winding(layer, center, range.bits());
   }
   return filled_;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// A sweep over y with disjoint intervals of x.
 #include "prefilter/shapes/raster/shape_groups.h"
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-// What the sweep passes from `low` (the key in a map) to `high`, up to a height.
+// An interval of x from the map's key to `high`, occupied up to a height.
 struct Interval {
   double high = 0.0;
   double top = 0.0;
@@ -20,7 +21,7 @@ struct Interval {
 
 }  // namespace
 
-std::vector<std::vector<std::uint32_t>> groups_apart(std::span<const Box2> boxes) {
+std::vector<std::vector<std::uint32_t>> overlapping_groups(std::span<const Box2> boxes) {
   std::vector<std::uint32_t> order;
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
     if (!boxes[i].empty()) order.push_back(i);
@@ -29,7 +30,7 @@ std::vector<std::vector<std::uint32_t>> groups_apart(std::span<const Box2> boxes
     return boxes[a].low.y != boxes[b].low.y ? boxes[a].low.y < boxes[b].low.y : a < b;
   });
   DisjointSets<std::uint32_t> sets(boxes.size());
-  std::map<double, Interval> passed;  // apart from each other
+  std::map<double, Interval> passed;  // disjoint
   for (const std::uint32_t i : order) {
     double low = boxes[i].low.x;
     Interval interval{boxes[i].high.x, boxes[i].high.y, i};

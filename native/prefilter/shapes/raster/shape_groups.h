@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Shapes that are apart from each other.
+// Groups shapes whose boxes overlap.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace prefilter {
 
-/// Numbers of boxes in rising order, by groups: boxes of different groups do not meet. They are
-/// found by a sweep that joins what meets to one interval, so that there may be fewer groups than
-/// there could be. Empty boxes are in none.
-std::vector<std::vector<std::uint32_t>> groups_apart(std::span<const Box2> boxes);
+/// Indices of boxes by group, in ascending order: boxes of different groups do not overlap. The
+/// sweep merges overlapping boxes to one interval, so groups may be larger than necessary. Empty
+/// boxes are in no group.
+std::vector<std::vector<std::uint32_t>> overlapping_groups(std::span<const Box2> boxes);
 
 }  // namespace prefilter

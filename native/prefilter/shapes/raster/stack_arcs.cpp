@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Pieces are sorted by rows, and cut to the cells of one row at a time.
 #include "prefilter/shapes/raster/stack_arcs.h"
 
 #include <algorithm>
@@ -13,12 +14,12 @@
 namespace prefilter {
 namespace {
 
-// Of arcs of one layer in a cell, those that are equal become one where there are more than so
-// many: a contour that is there many times is no more work than once.
-constexpr std::ptrdiff_t kManyArcs = 16;
+// Above this number of arcs of one layer in a cell, equal arcs are merged, so that a repeated
+// contour costs no more than one.
+constexpr std::ptrdiff_t kMaxUnmergedArcs = 16;
 
-// Fewer are sorted in place.
-constexpr std::size_t kFewArcs = 48;
+// Fewer arcs are sorted in place, more by counting.
+constexpr std::size_t kMaxInPlaceSortArcs = 48;
 
 std::uint64_t key_of(const StackArc& arc) {
   std::uint64_t key = 0;
@@ -69,7 +70,7 @@ void StackArcs::add_piece(const MonotoneCurve& piece, int sign, std::uint32_t la
   for (const Parabola& parabola : parabolas_) parts_.push_back({parabola, index, kNoRow, {}});
 }
 
-// The parts that each row has, so that none is looked at elsewhere.
+// Lists the parts of each row.
 void StackArcs::sort_by_rows() {
   const auto for_rows = [&](const Part& part, const auto& use) {
     const double last = window_.end_row - 1;
@@ -118,14 +119,14 @@ bool StackArcs::is_open(const Layer& layer, const OpenColumns& open) const {
   return open.next(layer.first_column, layer.end_column) < layer.end_column;
 }
 
-// Winding numbers change the other way where a piece falls.
+// A falling piece changes winding numbers in the opposite direction.
 int StackArcs::winding_of(const Part& part) const {
   const int sign = pieces_[part.piece].sign;
   return part.parabola.t_low < part.parabola.t_high ? sign : -sign;
 }
 
-// Where a part passes a height that it has inside.
-StackArcs::Place StackArcs::passing(const Part& part, double y) const {
+// Point of a part at a height strictly inside it.
+StackArcs::ArcPoint StackArcs::point_at_height(const Part& part, double y) const {
   const Parabola& parabola = part.parabola;
   const MonotoneCurve& curve = pieces_[part.piece].curve;
   if (has_parabolas_ || curve.curve.kind == CurveKind::kLine) {
@@ -136,16 +137,16 @@ StackArcs::Place StackArcs::passing(const Part& part, double y) const {
   return {t, {std::clamp(curve.curve.at(t).x, left, right), y}};
 }
 
-// Rows come from below, so that a part comes into one where it came out of the last.
+// Rows are visited from the lowest, so a part enters a row where it left the one before.
 StackArcs::RowPart StackArcs::in_row(std::uint32_t index) {
   Part& part = parts_[index];
   const Parabola& parabola = part.parabola;
-  Place low{parabola.t_low, parabola.low};
-  Place high{parabola.t_high, parabola.high};
+  ArcPoint low{parabola.t_low, parabola.low};
+  ArcPoint high{parabola.t_high, parabola.high};
   const int row = row_.first_row;
-  if (low.point.y < row) low = part.entered_row == row ? part.entered : passing(part, row);
+  if (low.point.y < row) low = part.entered_row == row ? part.entered : point_at_height(part, row);
   if (high.point.y > row_.end_row) {
-    high = passing(part, row_.end_row);
+    high = point_at_height(part, row_.end_row);
     part.entered_row = row_.end_row;
     part.entered = high;
   }
@@ -158,8 +159,8 @@ StackArcs::RowPart StackArcs::in_row(std::uint32_t index) {
   return {index, low, high, column_of(left - 1e-6), column_of(right + 1e-6) + 1};
 }
 
-void StackArcs::append_left(double y_begin, double y_end, int sign,
-                            std::vector<StackArc>* arcs) const {
+void StackArcs::append_left_of_window(double y_begin, double y_end, int sign,
+                                      std::vector<StackArc>* arcs) const {
   const double center = row_.first_row + 0.5;
   if (y_begin > y_end) {
     std::swap(y_begin, y_end);
@@ -168,13 +169,14 @@ void StackArcs::append_left(double y_begin, double y_end, int sign,
   arcs->push_back({{0.0, y_begin - center}, {0.0, y_end - center}, -1, sign, StackArc::kLine, 0.0});
 }
 
-// Of what is in cells that are not seen only the heights count. Returns false where it passes
-// others.
+// Appends the part to one column if none of its cells is open: then only heights matter. Returns
+// false otherwise.
 bool StackArcs::append_hidden(const RowPart& in_row, const OpenColumns& open,
                               std::vector<StackArc>* arcs) const {
   if (open.next(in_row.first_column, in_row.end_column) < in_row.end_column) return false;
   if (std::max(in_row.low.point.x, in_row.high.point.x) >= row_.end_column) return false;
-  append_left(in_row.low.point.y, in_row.high.point.y, winding_of(parts_[in_row.part]), arcs);
+  append_left_of_window(in_row.low.point.y, in_row.high.point.y, winding_of(parts_[in_row.part]),
+                        arcs);
   arcs->back().column = in_row.first_column;
   return true;
 }
@@ -187,7 +189,7 @@ void StackArcs::append_line(const Part& part, std::vector<StackArc>* arcs) const
         {begin - center, end - center, column - row_.first_column, sign, StackArc::kLine, 0.0});
   };
   const auto add_left = [&](int, double y_begin, double y_end) {
-    append_left(y_begin, y_end, sign, arcs);
+    append_left_of_window(y_begin, y_end, sign, arcs);
   };
   cut_line_to_cells(part.parabola.low, part.parabola.high, row_, add_line, add_left);
 }
@@ -199,21 +201,21 @@ void StackArcs::append_curve(const RowPart& in_row, std::vector<StackArc>* arcs)
   const auto add_arc = [&](int column, int row, const CellArc& arc) {
     if (arc.begin.y == arc.end.y) return;
     const Point2 center{column + 0.5, row + 0.5};
-    StackArc made{arc.begin - center,
-                  arc.end - center,
-                  column - row_.first_column,
-                  piece.sign,
-                  static_cast<std::uint32_t>(curves_.size()),
-                  0.0};
+    StackArc stack_arc{arc.begin - center,
+                       arc.end - center,
+                       column - row_.first_column,
+                       piece.sign,
+                       static_cast<std::uint32_t>(curves_.size()),
+                       0.0};
     if (!rises) {
-      std::swap(made.low, made.high);
-      made.winding = -piece.sign;
+      std::swap(stack_arc.low, stack_arc.high);
+      stack_arc.winding = -piece.sign;
     }
-    arcs->push_back(made);
+    arcs->push_back(stack_arc);
     curves_.push_back({index, arc.t_begin, arc.t_end});
   };
-  const Place& begin = rises ? in_row.low : in_row.high;
-  const Place& end = rises ? in_row.high : in_row.low;
+  const ArcPoint& begin = rises ? in_row.low : in_row.high;
+  const ArcPoint& end = rises ? in_row.high : in_row.low;
   if (in_row.first_column + 1 == in_row.end_column &&
       std::min(begin.point.x, end.point.x) >= row_.first_column &&
       std::max(begin.point.x, end.point.x) <= row_.end_column) {
@@ -227,7 +229,7 @@ void StackArcs::append_curve(const RowPart& in_row, std::vector<StackArc>* arcs)
   curve.t_end = end.t;
   curve.end = end.point;
   const auto add_left = [&](int, double y_begin, double y_end) {
-    append_left(y_begin, y_end, piece.sign, arcs);
+    append_left_of_window(y_begin, y_end, piece.sign, arcs);
   };
   cut_to_cells(curve, row_, add_arc, add_left);
 }
@@ -245,7 +247,7 @@ void StackArcs::append_parabola(const Part& part, std::vector<StackArc>* arcs) {
     curves_.push_back({part.piece, std::min(t_low, t_high), std::max(t_low, t_high)});
   };
   const auto add_left = [&](int, double y_begin, double y_end) {
-    append_left(y_begin, y_end, sign, arcs);
+    append_left_of_window(y_begin, y_end, sign, arcs);
   };
   cut_rising_to_cells(
       parabola.low, parabola.high, [&](double y) { return parabola.x_at(y); },
@@ -274,7 +276,7 @@ void StackArcs::sort_by_columns(std::size_t first, std::vector<StackArc>* arcs) 
   const auto begin = arcs->begin() + static_cast<std::ptrdiff_t>(first);
   const auto own = std::span(*arcs).subspan(first);
   if (std::is_sorted(begin, arcs->end(), is_before)) return;
-  if (own.size() <= kFewArcs) {
+  if (own.size() <= kMaxInPlaceSortArcs) {
     std::stable_sort(begin, arcs->end(), is_before);
     return;
   }
@@ -286,20 +288,20 @@ void StackArcs::sort_by_columns(std::size_t first, std::vector<StackArc>* arcs) 
   std::copy(sorted_.begin(), sorted_.end(), begin);
 }
 
-bool StackArcs::are_different(std::span<const StackArc> arcs) {
+bool StackArcs::are_all_different(std::span<const StackArc> arcs) {
   keys_.clear();
   for (const StackArc& arc : arcs) keys_.push_back(key_of(arc));
   std::sort(keys_.begin(), keys_.end());
   return std::adjacent_find(keys_.begin(), keys_.end()) == keys_.end();
 }
 
-StackArcs::Places StackArcs::places_of(const StackArc& arc) const {
-  Places numbers = {arc.low.y, arc.low.x, arc.high.y, arc.high.x};
+StackArcs::ArcSignature StackArcs::signature_of(const StackArc& arc) const {
+  ArcSignature numbers = {arc.low.y, arc.low.x, arc.high.y, arc.high.x};
   if (arc.curve == StackArc::kLine) return numbers;
   const StackCurve& of = curve(arc);
   const ParametricCurve& whole = piece(of).curve;
-  const bool is_told = whole.kind != CurveKind::kBezier;
-  numbers[4] = is_told ? 1.0 : 2.0 + arc.curve;
+  const bool has_few_parameters = whole.kind != CurveKind::kBezier;
+  numbers[4] = has_few_parameters ? 1.0 : 2.0 + arc.curve;
   numbers[5] = of.t_end - of.t_begin;
   for (std::size_t i = 0; i < 3; ++i) {
     const double share = 0.25 * static_cast<double>(i + 1);
@@ -312,24 +314,25 @@ StackArcs::Places StackArcs::places_of(const StackArc& arc) const {
 
 bool StackArcs::are_equal(const StackArc& a, const StackArc& b) const {
   return a.winding == b.winding && a.low == b.low && a.high == b.high &&
-         places_of(a) == places_of(b);
+         signature_of(a) == signature_of(b);
 }
 
 void StackArcs::merge(std::vector<StackArc>::iterator begin, std::vector<StackArc>::iterator end,
                       std::vector<StackArc>::iterator* out) const {
-  struct Told {
-    Places places;
+  struct SignedArc {
+    ArcSignature signature;
     StackArc arc;
   };
-  std::vector<Told> told;
-  for (auto arc = begin; arc != end; ++arc) told.push_back({places_of(*arc), *arc});
-  std::stable_sort(told.begin(), told.end(),
-                   [](const Told& a, const Told& b) { return a.places < b.places; });
-  for (std::size_t i = 0; i < told.size();) {
+  std::vector<SignedArc> signed_arcs;
+  for (auto arc = begin; arc != end; ++arc) signed_arcs.push_back({signature_of(*arc), *arc});
+  std::stable_sort(
+      signed_arcs.begin(), signed_arcs.end(),
+      [](const SignedArc& a, const SignedArc& b) { return a.signature < b.signature; });
+  for (std::size_t i = 0; i < signed_arcs.size();) {
     const std::size_t first = i;
-    StackArc sum = told[first].arc;
-    while (++i < told.size() && told[i].places == told[first].places) {
-      sum.winding += told[i].arc.winding;
+    StackArc sum = signed_arcs[first].arc;
+    while (++i < signed_arcs.size() && signed_arcs[i].signature == signed_arcs[first].signature) {
+      sum.winding += signed_arcs[i].arc.winding;
     }
     if (sum.winding != 0) *(*out)++ = sum;
   }
@@ -340,7 +343,7 @@ void StackArcs::merge_equal(std::size_t first, std::vector<StackArc>* arcs) {
   for (auto begin = out; begin != arcs->end();) {
     auto end = begin;
     while (end != arcs->end() && end->column == begin->column) ++end;
-    if (end - begin <= kManyArcs || are_different({begin, end})) {
+    if (end - begin <= kMaxUnmergedArcs || are_all_different({begin, end})) {
       out = out == begin ? end : std::move(begin, end, out);
     } else {
       merge(begin, end, &out);

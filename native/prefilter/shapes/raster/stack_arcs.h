@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What the outlines of a stack leave in the cells of a band, row by row.
+// The arcs of a stack's outlines in the cells of a band, row by row.
 #pragma once
 
 #include <algorithm>
@@ -19,19 +19,20 @@ namespace prefilter {
 
 class CompositedRows;
 
-/// Part of a monotone curve in a cell, from its lower end. Coordinates are from the cell's center.
+/// Part of a monotone curve in a cell, from its lower end. Coordinates are relative to the cell's
+/// center.
 struct StackArc {
   static constexpr std::uint32_t kLine = UINT32_MAX;
 
   Point2 low;
   Point2 high;
-  std::int32_t column = 0;      // from the window's first
-  std::int32_t winding = 1;     // what the number to its right is higher by than that to its left
-  std::uint32_t curve = kLine;  // one of StackArcs::curve()
-  double bend = 0.0;            // as that of a Parabola, where curves are told by these
+  std::int32_t column = 0;      // relative to the window's first
+  std::int32_t winding = 1;     // winding number to its right minus that to its left
+  std::uint32_t curve = kLine;  // index for StackArcs::curve()
+  double bend = 0.0;            // see Parabola, if curves are represented by parabolas
 };
 
-/// Where on a curve an arc is.
+/// Parameter range of an arc on its piece.
 struct StackCurve {
   std::uint32_t piece = 0;
   double t_begin = 0.0;  // along the piece, which may fall
@@ -40,34 +41,34 @@ struct StackCurve {
 
 class StackArcs {
  public:
-  /// What is of a layer in the row.
+  /// A layer's part of the row.
   struct Layer {
     std::uint32_t layer = 0;
     std::size_t first_part = 0;
     std::size_t end_part = 0;
-    // Of all columns that it has something in, from the window's first.
+    // Columns it may touch, relative to the window's first.
     int first_column = 0;
     int end_column = 0;
   };
 
-  /// With marks, for the box filter, only columns that have one will be open. `has_parabolas` says
-  /// whether curves are told by parabolas.
+  /// Marks require the box filter and that only columns with marks will be open. `has_parabolas`
+  /// represents curves by parabolas.
   void begin_band(const LayerStack& stack, const CellFilter& filter, int width, int first_row,
                   int end_row, bool has_parabolas = false, const CompositedRows* marks = nullptr);
   const GridWindow& window() const { return window_; }
 
   void begin_row(int row);
-  /// Whether a layer may be in columns that are open.
+  /// Whether a layer may be in an open column.
   bool is_open(const Layer& layer, const OpenColumns& open) const;
-  /// Those of the row, from the highest.
+  /// The layers of the row, from the highest.
   std::span<const Layer> layers() const { return layers_; }
-  /// Appends the arcs of a layer in the row, by columns. What lies left of the window is in column
-  /// -1, and what lies in columns that are not open is in any of those.
+  /// Appends the arcs of a layer in the row, sorted by column. Arcs left of the window are in
+  /// column -1; arcs in closed columns are in any of them.
   void append(const Layer& layer, const OpenColumns& open, std::vector<StackArc>* arcs);
   const StackCurve& curve(const StackArc& arc) const { return curves_[arc.curve]; }
-  /// Whether they are the same, as far as five places tell.
+  /// Whether two arcs are equal, as far as five points show.
   bool are_equal(const StackArc& a, const StackArc& b) const;
-  /// In coordinates of cells.
+  /// The piece of an arc, in cell coordinates.
   const MonotoneCurve& piece(const StackCurve& curve) const { return pieces_[curve.piece].curve; }
 
  private:
@@ -76,48 +77,48 @@ class StackArcs {
     int sign = 1;
     std::uint32_t layer = 0;
   };
-  // Where a part is at a height.
-  struct Place {
+  // A point of a part.
+  struct ArcPoint {
     double t = 0.0;  // along the piece
     Point2 point;
   };
-  // Of a piece; told by parabolas it has several, else one that is its chord.
+  // Part of a piece: one of its parabolas, or the chord of the whole piece.
   struct Part {
     Parabola parabola;
     std::uint32_t piece = 0;
-    // Where it came out of the row below.
+    // Where it left the row below.
     int entered_row = kNoRow;
-    Place entered;
+    ArcPoint entered;
   };
-  // What is in the row of a part.
+  // Section of a part within the row.
   struct RowPart {
     std::uint32_t part = 0;
-    Place low;
-    Place high;
-    // From the window's first, and within the window.
+    ArcPoint low;
+    ArcPoint high;
+    // relative to the window's first, and inside the window
     int first_column = 0;
     int end_column = 0;
   };
   static constexpr int kNoRow = INT32_MIN;
-  // What tells an arc from others: where it is at five places. Curves up to degree 3, and conics,
-  // are told by so many.
-  using Places = std::array<double, 12>;
+  // Coordinates at five points that identify an arc: enough for curves up to degree 3 and conics.
+  using ArcSignature = std::array<double, 12>;
 
-  Places places_of(const StackArc& arc) const;
+  ArcSignature signature_of(const StackArc& arc) const;
   void add_piece(const MonotoneCurve& piece, int sign, std::uint32_t layer, const IsSeen& is_seen);
   void sort_by_rows();
   int winding_of(const Part& part) const;
-  Place passing(const Part& part, double y) const;
+  ArcPoint point_at_height(const Part& part, double y) const;
   RowPart in_row(std::uint32_t index);
   bool append_hidden(const RowPart& in_row, const OpenColumns& open,
                      std::vector<StackArc>* arcs) const;
   void append_line(const Part& part, std::vector<StackArc>* arcs) const;
   void append_curve(const RowPart& in_row, std::vector<StackArc>* arcs);
   void append_parabola(const Part& part, std::vector<StackArc>* arcs);
-  void append_left(double y_begin, double y_end, int sign, std::vector<StackArc>* arcs) const;
+  void append_left_of_window(double y_begin, double y_end, int sign,
+                             std::vector<StackArc>* arcs) const;
   void sort_by_columns(std::size_t first, std::vector<StackArc>* arcs);
   void merge_equal(std::size_t first, std::vector<StackArc>* arcs);
-  bool are_different(std::span<const StackArc> arcs);
+  bool are_all_different(std::span<const StackArc> arcs);
   void merge(std::vector<StackArc>::iterator begin, std::vector<StackArc>::iterator end,
              std::vector<StackArc>::iterator* out) const;
 
@@ -125,7 +126,7 @@ class StackArcs {
   std::vector<Piece> pieces_;
   std::vector<Part> parts_;
   std::vector<Parabola> parabolas_;
-  std::vector<std::uint32_t> sorted_parts_;  // by rows, of one in the order of parts_
+  std::vector<std::uint32_t> sorted_parts_;  // sorted by row, in the order of parts_ within a row
   std::vector<std::size_t> first_of_row_;
   bool has_parabolas_ = false;
   GridWindow row_;

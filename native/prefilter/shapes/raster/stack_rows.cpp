@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Along a row of cells those between two that arcs pass show the same. In a cell with arcs, what it
-// shows is the sum, over the parts of arcs, of what is to the right of a part, times the color
-// there less that to its left.
+// Along a row, the cells between two cells with arcs have the same layers. The value of a cell with
+// arcs is a sum over the parts of arcs: the region to the right of each part, times the difference
+// of the colors on both sides.
 #include "prefilter/shapes/raster/stack_rows.h"
 
 #include <algorithm>
@@ -12,17 +12,17 @@ namespace prefilter {
 namespace {
 
 constexpr double kMomentUnit = 1.0 / (1 << kMomentBits);
-constexpr std::size_t kMostArcs = RowLayers::kMostSweptArcs;
-// Areas are not held as moments are; curves are several arcs then.
-constexpr std::size_t kMostArcsForAreas = 250;
+constexpr std::size_t kMaxArcsForMoments = RowLayers::kMaxSweptArcs;
+// Areas are not limited by the range of integer moments; a curve then consists of several arcs.
+constexpr std::size_t kMaxArcsForAreas = 250;
 
-// About the steps of a sweep, of arcs of which some cross; those for areas are shorter.
+// Approximate steps of a sweep in which some arcs cross; the sweep for areas is shorter.
 constexpr std::size_t steps_of(std::size_t arcs, bool are_for_areas) {
   return are_for_areas ? (arcs * arcs + 1) / 2 : 3 * arcs * arcs;
 }
 
-// A row of a number of steps for all rows.
-std::size_t share_of_row(std::size_t steps, int height) {
+// The steps for a row, given the steps for the image.
+std::size_t steps_per_row(std::size_t steps, int height) {
   return steps / static_cast<std::size_t>(std::max(height, 64));
 }
 
@@ -36,18 +36,18 @@ StackRows<N>::StackRows(const LayerStack& stack, const CellFilter& filter,
       filter_(filter),
       channels_(channels),
       width_(width),
-      sweep_steps_(share_of_row(sweep_steps, height)),
+      sweep_steps_(steps_per_row(sweep_steps, height)),
       layers_(stack, channels),
       colors_(stack, filter, background, channels),
       sweep_(arcs_),
       quadrature_(N),
       pixels_(filter, width) {}
 
-// Says up to how many arcs cells are swept.
+// Chooses the largest number of arcs per cell that is swept in this row.
 template <int N>
 void StackRows<N>::plan_row() {
-  std::array<std::size_t, kMostArcsForAreas + 1> cells{};  // by arcs
-  const std::size_t most = has_parabolas_ ? kMostArcsForAreas : kMostArcs;
+  std::array<std::size_t, kMaxArcsForAreas + 1> cells{};  // number of cells by number of arcs
+  const std::size_t most = has_parabolas_ ? kMaxArcsForAreas : kMaxArcsForMoments;
   const int columns = arcs_.window().end_column - arcs_.window().first_column;
   for (int column = 0; column < columns; ++column) {
     if (layers_.layer_count(column) == 0) continue;
@@ -55,8 +55,8 @@ void StackRows<N>::plan_row() {
     if (arcs <= most) ++cells[arcs];
   }
   std::size_t steps = 0;
-  for (most_arcs_ = 0; most_arcs_ < most; ++most_arcs_) {
-    steps += cells[most_arcs_ + 1] * steps_of(most_arcs_ + 1, has_parabolas_);
+  for (max_arcs_ = 0; max_arcs_ < most; ++max_arcs_) {
+    steps += cells[max_arcs_ + 1] * steps_of(max_arcs_ + 1, has_parabolas_);
     if (steps > sweep_steps_) break;
   }
 }
@@ -68,7 +68,7 @@ void StackRows<N>::add_values(int first_row, int end_row, BandValues* values) {
   arcs_.begin_band(stack_, filter_, width_, first_row, end_row, has_parabolas_);
   const GridWindow& window = arcs_.window();
   for (int row = window.first_row; row < window.end_row; ++row) {
-    wanted_.reset(window.end_column - window.first_column);
+    requested_.reset(window.end_column - window.first_column);
     add_row(row);
   }
 }
@@ -81,14 +81,14 @@ void StackRows<N>::add_marked(int first_row, int end_row, const CompositedRows& 
   arcs_.begin_band(stack_, filter_, width_, first_row, end_row, has_parabolas_, &marks);
   for (int row = first_row; row < end_row; ++row) {
     if (!marks.has_marks(row)) continue;
-    marks.marked_columns(row, &wanted_);
+    marks.marked_columns(row, &requested_);
     add_row(row);
   }
 }
 
 template <int N>
 void StackRows<N>::add_row(int row) {
-  layers_.make_row(row, wanted_, &arcs_);
+  layers_.make_row(row, requested_, &arcs_);
   plan_row();
   const int first = arcs_.window().first_column;
   const int columns = arcs_.window().end_column - first;
@@ -96,7 +96,7 @@ void StackRows<N>::add_row(int row) {
     layers_.enter(column);
     if (layers_.layers().empty()) {
       const int end = layers_.next_change(column);
-      add_wanted(column, end, row);
+      add_requested(column, end, row);
       column = end;
     } else {
       add_cell(first + column, row);
@@ -105,13 +105,13 @@ void StackRows<N>::add_row(int row) {
   }
 }
 
-// Runs of cells that are wanted.
+// Adds runs of requested cells.
 template <int N>
-void StackRows<N>::add_wanted(int begin, int end, int row) {
+void StackRows<N>::add_requested(int begin, int end, int row) {
   const int first = arcs_.window().first_column;
-  while ((begin = wanted_.next(begin, end)) < end) {
+  while ((begin = requested_.next(begin, end)) < end) {
     int last = begin + 1;
-    while (last < end && wanted_.is_open(last)) ++last;
+    while (last < end && requested_.is_open(last)) ++last;
     add_run(first + begin, first + last, row);
     begin = last;
   }
@@ -147,7 +147,7 @@ void StackRows<N>::add_varying_run(int begin, int end, int row) {
   }
 }
 
-// One layer under the box filter.
+// Adds a single layer under the box filter.
 template <int N>
 void StackRows<N>::add_means(const Paint& paint, int begin, int end, int row) {
   if (means_ == nullptr || means_of_ != &paint) {
@@ -170,11 +170,11 @@ template <int N>
 void StackRows<N>::add_cell(int column, int row) {
   const auto layers = layers_.layers();
   colors_.begin_cell(column, row, layers, layers_.full());
-  const auto seen = layers.first(colors_.look_at(CellSweep::kMostLayers + 1));
+  const auto seen = layers.first(colors_.examine(CellSweep::kMaxSweptLayers + 1));
   std::size_t arcs = 0;
   for (const CellLayer& layer : seen) arcs += layer.arcs.size();
   const std::size_t most_work = 16 * steps_of(arcs, false) + 256;
-  if (arcs <= most_arcs_ && seen.size() <= CellSweep::kMostLayers) {
+  if (arcs <= max_arcs_ && seen.size() <= CellSweep::kMaxSweptLayers) {
     if (!stack_.is_constant) {
       if (quadrature_.find(seen, colors_, most_work)) {
         ++work_.swept_cells;
@@ -216,18 +216,18 @@ void StackRows<N>::add_sampled(int column, int row) {
   }
 }
 
-// Adds a part to the moments of a place.
+// Adds a part of an arc to the moments of a pair of states.
 template <int N>
-void StackRows<N>::integrate(const SweptPart& part, int column, int row, std::int32_t place) {
+void StackRows<N>::integrate(const SweptPart& part, int column, int row, std::int32_t pair) {
   if (part.arc == SweptPart::kLeftSide) {
-    batch_.add_line({-0.5, part.low}, {-0.5, part.high}, 1, place, &moments_);
+    batch_.add_line({-0.5, part.low}, {-0.5, part.high}, 1, pair, &moments_);
     return;
   }
   const StackArc& arc = sweep_.arc(part);
   const Point2 low = sweep_.point_at(arc, part.low);
   const Point2 high = sweep_.point_at(arc, part.high);
   if (arc.curve == StackArc::kLine) {
-    batch_.add_line(low, high, 1, place, &moments_);
+    batch_.add_line(low, high, 1, pair, &moments_);
     return;
   }
   const StackCurve& curve = arcs_.curve(arc);
@@ -244,12 +244,12 @@ void StackRows<N>::integrate(const SweptPart& part, int column, int row, std::in
     std::swap(cell_arc.t_begin, cell_arc.t_end);
     std::swap(cell_arc.begin, cell_arc.end);
   }
-  batch_.add_curve(piece.curve, cell_arc, center, rises ? 1 : -1, place, &moments_);
+  batch_.add_curve(piece.curve, cell_arc, center, rises ? 1 : -1, pair, &moments_);
 }
 
-// Adds what lies right of arcs, times the color that is there more than to their left.
+// Adds the region right of arcs, times the difference of the colors on both sides.
 template <int N>
-void StackRows<N>::add_place(const ArcMoments<N>& moments, const ChannelValues& step) {
+void StackRows<N>::add_state_pair(const ArcMoments<N>& moments, const ChannelValues& step) {
   std::array<std::array<double, N + 1>, N + 1> powers;
   for (int a = 0; a <= N; ++a) {
     auto& line = powers[a];
@@ -272,25 +272,25 @@ void StackRows<N>::add_swept(int column, int row) {
   for (std::uint32_t state = 1; state < states; ++state) {
     colors_.compose(sweep_.present_in(state), &state_colors_[state]);
   }
-  places_.clear();
+  state_pairs_.clear();
   moments_.clear();
   for (const SweptPart& part : sweep_.parts()) {
     if (state_colors_[part.left] == state_colors_[part.right]) continue;
-    const std::uint32_t place =
-        places_.number_of(static_cast<std::uint64_t>(part.left) << 32 | part.right);
-    if (place == moments_.size()) moments_.emplace_back();
-    integrate(part, column, row, static_cast<std::int32_t>(place));
+    const std::uint32_t pair =
+        state_pairs_.index_of(static_cast<std::uint64_t>(part.left) << 32 | part.right);
+    if (pair == moments_.size()) moments_.emplace_back();
+    integrate(part, column, row, static_cast<std::int32_t>(pair));
   }
   batch_.flush(&moments_);
   for (int c = 0; c < channels_; ++c) {
     sums_[c].assign(static_cast<std::size_t>(N + 1) * (N + 1), 0.0);
   }
-  for (std::size_t place = 0; place < moments_.size(); ++place) {
-    const std::uint64_t key = places_.keys()[place];
+  for (std::size_t pair = 0; pair < moments_.size(); ++pair) {
+    const std::uint64_t key = state_pairs_.keys()[pair];
     const ChannelValues& before = state_colors_[key >> 32];
     ChannelValues step = state_colors_[key & UINT32_MAX];
     for (int c = 0; c < channels_; ++c) step[c] -= before[c];
-    add_place(moments_[place], step);
+    add_state_pair(moments_[pair], step);
   }
   for (int c = 0; c < channels_; ++c) pixels_.add(column, row, c, sums_[c]);
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Section 3.2.2 for curves in the plane: coefficients by strips, one tree per layer, synthesis by
+// strips.
 #include "prefilter/shapes/raster/wavelet_image.h"
 
 #include <algorithm>
@@ -15,11 +17,11 @@
 namespace prefilter {
 namespace {
 
-// What a thread makes at once. That of a strip with curves in every brick takes 2 MiB.
+// Rows per strip; the coefficients of a strip with curves in every brick take 2 MiB.
 int rows_of_strip(const PlaneGrid& grid) {
   constexpr int kCells = 1 << 16;
-  constexpr int kMostRows = 256;
-  const int rows = std::clamp(kCells / grid.width, 2 * kPlaneBrickSide, kMostRows);
+  constexpr int kMaxStripRows = 256;
+  const int rows = std::clamp(kCells / grid.width, 2 * kPlaneBrickSide, kMaxStripRows);
   return rows / kPlaneBrickSide * kPlaneBrickSide;
 }
 
@@ -29,7 +31,7 @@ void add_segments(const EdgeList& edges, int first_row, int end_row, const Plane
   const double high = end_row == grid.height ? HUGE_VAL : end_row;
   edges.for_segments_between(low, high, [&](std::span<const Point2> controls, double weight) {
     if (controls.size() == 2) {
-      // As for_monotone_pieces does, so that shared edges cancel.
+      // The same direction as in for_monotone_pieces, so that shared edges cancel.
       const bool backward = is_cut_backward(controls);
       strip->add_line(controls[backward], controls[!backward], backward ? -1.0 : 1.0);
       return;
@@ -40,8 +42,8 @@ void add_segments(const EdgeList& edges, int first_row, int end_row, const Plane
   });
 }
 
-// The rows of an image that a thread makes. One layer goes into the image at once; the values of
-// several are added up more finely first.
+// Rows of an image made by one thread. A single layer is written directly; several layers are
+// accumulated in doubles first.
 template <int Channels>
 class ImageRows {
  public:
@@ -157,7 +159,7 @@ void add_up_wavelets(const RasterLayers& job, int depth, int threads, const Prog
     throw_invalid("width, height: found " + std::to_string(image->width) + " x " +
                   std::to_string(image->height) + " pixels; the wavelet method takes up to 2^24");
   }
-  // Cells at the image's border are whole.
+  // Cells at the image's border are complete.
   const int cell_depth = wavelet_depth(image->width, image->height) - depth;
   const auto in_whole_cells = [&](int pixels) {
     return static_cast<int>((((pixels - 1) >> cell_depth) + 1) << cell_depth);

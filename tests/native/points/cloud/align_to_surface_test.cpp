@@ -20,7 +20,7 @@ double height(double x, double y) {
   return 0.2 * std::sin(4.0 * x) * std::cos(3.0 * y) + 0.3 * x * y;
 }
 
-// A bent sheet over the unit square, open all around.
+// A bent sheet over the unit square, with open borders.
 struct Sheet {
   std::vector<Vector3> positions;
   std::vector<std::array<std::int32_t, 3>> triangles;
@@ -52,7 +52,7 @@ struct Scan {
   ScanView view() const { return {positions, normals}; }
 };
 
-// Points of the triangles of a sheet, moved.
+// Points on the triangles of a sheet, moved.
 Scan scan_of(const Sheet& from, const RigidMotion& away, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -96,7 +96,7 @@ TEST(AlignToSurface, MovesScansBackOntoIt) {
 }
 
 TEST(AlignToSurface, TheFirstStaysWhereItWas) {
-  // It is off, and not the other: all are moved as one.
+  // Only the first is off, so all are moved as one.
   const Sheet surface = sheet({});
   const RigidMotion away = small_motion({0.01, 0.0, 0.01}, {0.01, 0.0, 0.005}, {0.5, 0.5, 0.0});
   const Scan off = scan_of(surface, away, 1);
@@ -110,7 +110,7 @@ TEST(AlignToSurface, TheFirstStaysWhereItWas) {
   EXPECT_LT(farthest(other, found.motions[1], expected), 1e-3);
 }
 
-TEST(AlignToSurface, GoesOnFromMotions) {
+TEST(AlignToSurface, StartsFromGivenMotions) {
   const Sheet surface = sheet({});
   const RigidMotion away = small_motion({0.0, 0.5, 0.0}, {3.0, 0.0, 0.0}, {});
   RigidMotion back = small_motion({0.0, -0.5, 0.0}, {}, {});
@@ -125,7 +125,7 @@ TEST(AlignToSurface, GoesOnFromMotions) {
   EXPECT_LT(farthest(far, found.motions[1], expected), 1e-3);
 }
 
-TEST(AlignToSurface, WhatFacesAwayOrIsFarDoesNotCount) {
+TEST(AlignToSurface, IgnoresPointsThatFaceAwayOrAreFar) {
   const Sheet surface = sheet({});
   Scan back = scan_of(surface, {}, 1);
   for (Vector3& normal : back.normals) normal = Vector3{} - normal;

@@ -15,7 +15,7 @@
 namespace prefilter {
 namespace {
 
-// Points of an ellipsoid, whose normals are not those of a sphere.
+// Points of an ellipsoid, whose normals differ from a sphere's.
 std::vector<Vector3> ellipsoid(std::size_t count, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
@@ -67,7 +67,7 @@ TEST(Subsample, GridsHaveOnePointInEachCell) {
   EXPECT_TRUE(subsample({}, 1.0, Subsampling::kGrid, Progress(), 1).empty());
 }
 
-TEST(FindOutliers, FindsWhatLiesByItself) {
+TEST(FindOutliers, FindsIsolatedPoints) {
   std::vector<Vector3> points = ellipsoid(2000, 2);
   points.push_back({3.0, 0.0, 0.0});
   const std::vector<bool> found = find_outliers(points, 16, 2.5, Progress(), 2);

@@ -15,7 +15,7 @@
 namespace prefilter {
 namespace {
 
-// A square in space whose texture is a part of the unit square.
+// A square in space whose texture covers part of the unit square.
 Surface square(double low, double high) {
   const std::vector<Vector3> positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   const std::vector<std::array<std::int32_t, 3>> triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -46,7 +46,7 @@ Points points_of(int count, const Color& color) {
   return points;
 }
 
-// The same least squares within bounds, by dense normal equations, one unknown after the other.
+// The same bounded least squares by dense normal equations, one unknown at a time.
 std::vector<double> dense_solution(const Points& points, int side, double smoothing) {
   const auto n = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
   std::vector<double> matrix(n * n);
@@ -76,7 +76,8 @@ std::vector<double> dense_solution(const Points& points, int side, double smooth
             {(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b},
             static_cast<double>(points.values[i]), 1.0);
   }
-  // The squared gradient of a bilinear cell by Gauss's two points along each axis, exactly.
+  // The squared gradient of a bilinear cell, exactly, by two-point Gaussian quadrature along each
+  // axis.
   for (int row = 0; row + 1 < side; ++row) {
     for (int column = 0; column + 1 < side; ++column) {
       for (const double at : {0.5 - std::sqrt(1.0 / 12.0), 0.5 + std::sqrt(1.0 / 12.0)}) {
@@ -101,7 +102,7 @@ std::vector<double> dense_solution(const Points& points, int side, double smooth
   return solution;
 }
 
-TEST(PaintTexture, IsTheLeastSquares) {
+TEST(PaintTexture, SolvesTheLeastSquares) {
   constexpr int kTexels = 8;
   const auto color = [](double x, double y) {
     return 0.5 + 0.4 * std::sin(5 * x) * std::cos(4 * y);
@@ -122,7 +123,8 @@ TEST(PaintTexture, IsTheLeastSquares) {
 }
 
 TEST(PaintTexture, OfALinearColorIsLinear) {
-  // Where samples say all, smoothness hardly counts; the gutter has what is beside it.
+  // Smoothness hardly counts where samples determine the texels; the gutter repeats the adjacent
+  // texels.
   const Points points =
       points_of(20000, [](double x, double y) { return 0.2 + 0.3 * x + 0.4 * y; });
   PaintOptions options;
@@ -142,7 +144,7 @@ TEST(PaintTexture, OfALinearColorIsLinear) {
   }
 }
 
-TEST(PaintTexture, LeavesOutWhatIsFarOrNotFinite) {
+TEST(PaintTexture, IgnoresPointsThatAreFarOrNotFinite) {
   Points points = points_of(400, [](double, double) { return 0.25; });
   points.places.push_back({0.5, 0.5, 3.0});
   points.values.push_back(1.0F);

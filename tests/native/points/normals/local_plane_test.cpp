@@ -26,8 +26,8 @@ std::array<Vector3, 3> random_frame(std::mt19937* random) {
   return {u, v, cross(u, v)};
 }
 
-// How far the vector is from the plane or line of eigenvectors of the least eigenvalues, where the
-// first `alike` of them are the same.
+// Distance of the vector from the plane or line of eigenvectors of the least eigenvalues, if the
+// first `alike` eigenvalues are equal.
 double error(const std::array<Vector3, 3>& frame, int alike, const Vector3& vector) {
   double square = 0.0;
   for (int i = alike; i < 3; ++i)
@@ -35,9 +35,9 @@ double error(const std::array<Vector3, 3>& frame, int alike, const Vector3& vect
   return std::sqrt(square);
 }
 
-TEST(LeastEigenvector, IsThatOfMatricesMadeOfEigenvectors) {
+TEST(LeastEigenvector, RecoversKnownEigenvectors) {
   struct Case {
-    std::array<double, 3> eigenvalues;  // from the least
+    std::array<double, 3> eigenvalues;  // ascending
     int alike;
     double tolerance;
   };
@@ -62,13 +62,13 @@ TEST(LeastEigenvector, IsThatOfMatricesMadeOfEigenvectors) {
   }
 }
 
-TEST(LeastEigenvector, IsAnyOfASphereAndZeroOfZero) {
+TEST(LeastEigenvector, HandlesEqualEigenvaluesAndZero) {
   EXPECT_NEAR(length(least_eigenvector({2.0, 0.0, 0.0, 2.0, 0.0, 2.0})), 1.0, 1e-15);
   EXPECT_EQ(least_eigenvector({}), Vector3{});
   EXPECT_EQ(least_eigenvector({1.0, 0.0, 0.0, 1.0, 0.0, 0.0}), (Vector3{0.0, 0.0, 1.0}));
 }
 
-TEST(Flatness, TellsLinesFromDiscs) {
+TEST(Flatness, DistinguishesLinesFromDiscs) {
   std::mt19937 random(2);
   for (const double share : {0.0, 0.001, 0.1, 1.0}) {
     for (const double scale : {1.0, 1e-200, 1e200}) {

@@ -54,7 +54,7 @@ TEST(EstimateNormals, PointUp) {
   EXPECT_GT(level, 100U);
 }
 
-TEST(HeightField, IsASheetAndNoSolid) {
+TEST(HeightField, AcceptsSheetsAndRejectsSolids) {
   std::vector<Vector3> points = sphere(5, 4000);
   EXPECT_FALSE(is_height_field(points, Progress()));
   for (Vector3& p : points) p[2] = 0.3 * p[0] * p[1];
@@ -63,7 +63,7 @@ TEST(HeightField, IsASheetAndNoSolid) {
   EXPECT_FALSE(is_height_field(points, Progress()));
 }
 
-TEST(EstimateNormals, TakeAnyPoints) {
+TEST(EstimateNormals, AcceptAnyPoints) {
   std::vector<Vector3> points = sphere(3, 300);
   for (std::size_t i = 0; i < 300; ++i) points.push_back(points[i % 7]);
   points.push_back({NAN, 0.0, 0.0});
@@ -77,7 +77,7 @@ TEST(EstimateNormals, TakeAnyPoints) {
   }
 }
 
-TEST(GridNormals, LeaveOutWhatIsFarBehind) {
+TEST(GridNormals, SkipDepthDiscontinuities) {
   constexpr std::int64_t kSide = 20;
   std::vector<Vector3> points;
   RangeGrid grid{kSide, kSide, {}};

@@ -11,7 +11,8 @@
 namespace prefilter {
 namespace {
 
-// Points on a line across all normals, so that two normals agree by the cosine of their angle.
+// Points on a line orthogonal to all normals, so that the agreement of two normals is the cosine of
+// their angle.
 struct Row {
   explicit Row(const std::vector<double>& degrees) {
     for (const double angle : degrees) {
@@ -23,7 +24,7 @@ struct Row {
     }
   }
 
-  // Joined by so many pairs.
+  // Joined by this many pairs.
   void link(std::size_t i, std::size_t j, int times) {
     linked[i].insert(linked[i].end(), static_cast<std::size_t>(times),
                      static_cast<std::uint32_t>(j));
@@ -35,7 +36,7 @@ struct Row {
     std::vector<std::uint32_t> links;
     for (std::size_t i = 0; i < linked.size(); ++i) {
       links.insert(links.end(), linked[i].begin(), linked[i].end());
-      // A point's link to itself says nothing.
+      // A point's link to itself carries no information.
       links.resize((i + 1) * degree, static_cast<std::uint32_t>(i));
     }
     std::vector<Vector3> result = normals;
@@ -49,11 +50,11 @@ struct Row {
   std::vector<std::vector<std::uint32_t>> linked;
 };
 
-// A fan of normals that turns by 9 degrees from each to the next, which leaves no doubt, and one
-// normal beside it: two pairs say that it has the direction of the first, by 0.9 each, and sixty
-// that it has the opposite one of the last, by 0.3. By their fourth powers the two are right: 1.3
-// to 0.5; by their cubes the sixty would be, 1.46 to 1.62, and by their squares all the more.
-TEST(Orientation, AFewGoodPairsCountForMoreThanManyDoubtfulOnes) {
+// A fan of normals that turn by 9 degrees from each to the next, which is unambiguous, and one
+// normal beside it. Two pairs vote with 0.9 each for the direction of the first, and sixty with 0.3
+// each for the opposite of the last. The two win by fourth powers, 1.3 to 0.5; by cubes the sixty
+// would win, 1.62 to 1.46, and by squares even more clearly.
+TEST(Orientation, FewClearPairsOutweighManyDoubtfulOnes) {
   std::vector<double> degrees = {0.0};
   for (int i = 0; i < 10; ++i) degrees.push_back(26.0 + 9.0 * i);
   for (const bool is_turned : {false, true}) {
@@ -68,7 +69,7 @@ TEST(Orientation, AFewGoodPairsCountForMoreThanManyDoubtfulOnes) {
   }
 }
 
-// Enough doubtful pairs do count: 200 by 0.3 are 1.6.
+// Enough doubtful pairs do count: 200 with 0.3 make 1.6.
 TEST(Orientation, ManyDoubtfulPairsCountTogether) {
   std::vector<double> degrees = {0.0};
   for (int i = 0; i < 10; ++i) degrees.push_back(26.0 + 9.0 * i);

@@ -14,7 +14,7 @@
 namespace prefilter {
 namespace {
 
-// `count` points on the x axis from `first` on; attribute k of a point at x is 10 x + k.
+// `count` points on the x axis, starting at `first`; attribute k of a point at x is 10 x + k.
 class Scan {
  public:
   Scan(double first, std::size_t count, std::vector<PointAttribute> names, bool is_double = false)
@@ -56,7 +56,7 @@ Read all_of(PointSource* source, std::size_t most) {
   return read;
 }
 
-TEST(JoinedPoints, AreThoseOfAllSourcesInOrder) {
+TEST(JoinedPoints, HaveAllSourcesInOrder) {
   const Scan first(0.0, 5, {});
   const Scan none(5.0, 0, {});
   const Scan last(5.0, 3, {}, true);
@@ -86,7 +86,7 @@ TEST(JoinedPoints, CanBeReadInShares) {
   joined.rewind();
   while (joined.read(100, &batch)) clouds.push_back(batch.cloud);
   EXPECT_EQ(clouds, (std::vector<std::size_t>{0, 1, 2, 4, 5}));
-  // In any order, and again.
+  // In any order, and repeatedly.
   for (const std::size_t share : {5U, 0U, 3U, 2U, 1U, 4U, 4U}) {
     joined.choose_share(share);
     EXPECT_EQ(joined.count(), shares[share].size());
@@ -108,12 +108,12 @@ TEST(JoinedPoints, HaveAttributesByName) {
   std::vector<std::string> names;
   for (const PointAttribute& each : joined.attributes()) names.push_back(each.name);
   EXPECT_EQ(names, (std::vector<std::string>{"intensity", "age", "red", "Paint.alpha"}));
-  // Missing ones are 0, or white.
+  // Missing attributes are 0, or white.
   EXPECT_EQ(all_of(&joined, 10).attributes,
             (std::vector<float>{0, 1, 255, 1, 10, 11, 255, 1, 0, 20, 21, 22}));
 }
 
-TEST(JoinedPoints, TakeTheFormOfTheFirst) {
+TEST(JoinedPoints, TakeTheRepresentationOfTheFirstSource) {
   const Scan bytes(1.0, 1, {{"red", true}, {"alpha", true}, {"class", true}});
   const Scan floats(0.02, 1, {{"red", false}, {"alpha", false}, {"class", false}});
   ArraySource a = bytes.source();
@@ -131,7 +131,7 @@ TEST(JoinedPoints, TakeTheFormOfTheFirst) {
   EXPECT_FALSE(other.attributes()[0].is_byte);
 }
 
-// Points that a scanner saw, without normals.
+// Scanned points without normals.
 class Seen final : public PointSource {
  public:
   explicit Seen(std::optional<Vector3> viewpoint) : viewpoint_(viewpoint) {}
@@ -154,7 +154,7 @@ class Seen final : public PointSource {
   bool is_done_ = false;
 };
 
-TEST(JoinedPoints, HaveThePlaceThatEachWasSeenFrom) {
+TEST(JoinedPoints, HaveTheViewpointOfEachSource) {
   Seen near({{0.0, 0.0, 1.0}});
   Seen far({{0.0, 0.0, 9.0}});
   JoinedPoints joined({&near, &far});

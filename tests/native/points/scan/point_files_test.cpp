@@ -64,7 +64,7 @@ struct ExampleFile {
 std::vector<ExampleFile> examples() {
   std::string record = bytes_of<float>({1, 2, 3, 5});
   record.append("abc").append(bytes_of<float>({0, 0, 1}));
-  // 62 bytes: of zeros after the first, as one literal and one copy.
+  // 62 bytes: zeros after the first, as one literal and one copy.
   const std::string packed =
       bytes_of<std::uint32_t>({5, 62}) + bytes_of<std::uint8_t>({0, 0, 7 << 5, 52, 0});
   return {
@@ -110,13 +110,13 @@ TEST(OpenPoints, ReadsAllFormats) {
   const std::optional<RangeGrid> grid = read_range_grid(folder.path("binary.ply"), Progress());
   ASSERT_TRUE(grid.has_value());
   EXPECT_EQ(grid->points, (std::vector<std::int64_t>{1, -1}));
-  // Its one face has a corner twice, and so no triangle.
+  // Its only face repeats a corner, so it has no triangle.
   EXPECT_TRUE(read_faces(folder.path("binary.ply"), Progress()).empty());
   EXPECT_EQ(open_points(folder.path("binary.pcd"))->viewpoint(), (Vector3{1, 2, 3}));
 }
 
-// Whatever is in a file, it is read or refused: under the sanitizers this says more.
-TEST(OpenPoints, ReadsOrRefusesWhatIsDamaged) {
+// Damaged files are read or refused; the sanitizers find more.
+TEST(OpenPoints, ReadsOrRefusesDamagedFiles) {
   const TestFolder folder;
   std::mt19937 random(1);
   for (const ExampleFile& example : examples()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What outlines enclose, by brute force: no part of it is shared with the library.
+// Brute-force regions of outlines, independent of the library.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace prefilter::outline_oracle {
 
-/// A point of a segment, by Bernstein's polynomials.
+/// A point of a segment, by Bernstein polynomials.
 inline Point2 bernstein(const Outline& outline, const Outline::Segment& segment, double t) {
   const auto controls = outline.controls(segment);
   Point2 sum{};
@@ -90,13 +90,13 @@ inline double area(const std::vector<Chain>& chains) {
   return sum;
 }
 
-/// By Richardson's extrapolation: lines are off by the square of their length.
+/// Area by Richardson extrapolation: the error of chords is quadratic in their length.
 inline double area(const Outline& outline) {
   return (4.0 * area(fine_chains(outline, 400)) - area(fine_chains(outline, 200))) / 3.0;
 }
 
-/// Random points of a box somewhat larger than the outline's, and at least `clearance` away from
-/// the curves.
+/// Random points of a box slightly larger than the outline's, at least `clearance` away from the
+/// curves.
 inline std::vector<Point2> random_points(const Outline& outline, int count, double clearance,
                                          unsigned seed) {
   Box2 box = control_box(outline);
@@ -120,7 +120,7 @@ inline Outline polygon(const std::vector<Point2>& points) {
   return outline;
 }
 
-/// Counter-clockwise, of four conics.
+/// A counter-clockwise circle of four conics.
 inline Outline circle(const Point2& center, double radius) {
   Outline outline;
   const std::array<Point2, 4> axes = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};

@@ -13,7 +13,7 @@ namespace {
 
 using namespace outline_oracle;
 
-TEST(PolygonClipper, LinesAreAsNearAsAsked) {
+TEST(PolygonClipper, FlattensWithinTheTolerance) {
   const Outline disc = circle({3, 4}, 100.0);
   double last = HUGE_VAL;
   for (const double tolerance : {1.0, 1e-2, 1e-4}) {
@@ -31,7 +31,7 @@ TEST(PolygonClipper, LinesAreAsNearAsAsked) {
   }
 }
 
-TEST(PolygonClipper, CombinesByEachRule) {
+TEST(PolygonClipper, CombinesByEitherRule) {
   const std::vector<Polygon> twice = {{{0, 0}, {4, 0}, {4, 4}, {0, 4}},
                                       {{1, 1}, {3, 1}, {3, 3}, {1, 3}}};
   const std::vector<Polygon> other = {{{2, 0}, {6, 0}, {6, 4}, {2, 4}}};

@@ -13,7 +13,7 @@ namespace {
 
 using namespace outline_oracle;
 
-// Compares what is filled before with the winding numbers after, away from the curves.
+// Compares the filled region before with the winding numbers after, at points away from the curves.
 void expect_resolved(const Outline& outline, FillRule rule, double clearance = 2e-3,
                      int count = 400) {
   const Outline result = resolve(outline, rule);
@@ -54,7 +54,7 @@ Outline random_curves(unsigned seed, int contours, int segments) {
   return outline;
 }
 
-// Counter-clockwise, with waves in and out.
+// A counter-clockwise closed curve with waves.
 Outline wavy_ring(double radius, int count) {
   std::vector<Point2> points;
   for (int i = 0; i < count; ++i) {
@@ -67,7 +67,7 @@ Outline wavy_ring(double radius, int count) {
 
 constexpr FillRule kRules[] = {FillRule::kNonzero, FillRule::kEvenOdd};
 
-TEST(Resolve, FillsWhatTheRuleFills) {
+TEST(Resolve, KeepsTheFilledRegion) {
   for (const FillRule rule : kRules) {
     for (unsigned seed = 0; seed < 12; ++seed) {
       SCOPED_TRACE(seed);
@@ -82,7 +82,7 @@ TEST(Resolve, FillsWhatTheRuleFills) {
   }
 }
 
-TEST(Resolve, NothingStaysNothing) {
+TEST(Resolve, EmptyStaysEmpty) {
   Outline outline;
   EXPECT_TRUE(resolve(outline, FillRule::kNonzero).empty());
   outline.move_to({1, 2});
@@ -102,7 +102,7 @@ bool same_points(const Outline& a, const Outline& b) {
   return std::equal(a.points().begin(), a.points().end(), b.points().begin(), b.points().end());
 }
 
-TEST(Resolve, WhatIsRightIsLeftAsItIs) {
+TEST(Resolve, LeavesResolvedOutlinesUnchanged) {
   const Outline ring = joined({circle({5, 5}, 3.0), reversed(circle({5, 5}, 2.0))});
   const Outline wavy = wavy_ring(1, 40);
   Outline quads;
@@ -151,8 +151,8 @@ TEST(Resolve, MeshesStayTrianglesAndUniteWhereOneOverlaps) {
   EXPECT_EQ(united.segments().size(), 4u * kSide);
 }
 
-TEST(Resolve, RuleSaysWhichContoursStay) {
-  // The second is of a shape that is not convex.
+TEST(Resolve, RuleDecidesWhichContoursAreKept) {
+  // The second contour makes a shape that is not convex.
   for (const auto& make : {+[](double radius) {
                              return circle({0, 0}, radius);
                            },
@@ -190,7 +190,7 @@ TEST(Resolve, CrossingCurvesStayCurves) {
   }
 }
 
-TEST(Resolve, ConvexContoursInAnyPlace) {
+TEST(Resolve, ConvexContoursAtAnyPosition) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   for (int round = 0; round < 40; ++round) {
@@ -247,7 +247,7 @@ TEST(Resolve, NastyOutlines) {
   }
 }
 
-TEST(Resolve, CurvesThatMeetInTangency) {
+TEST(Resolve, TangentCurves) {
   for (const double angle : {0.0, 0.3, 2.0}) {
     const Point2 way = {std::cos(angle), std::sin(angle)};
     const Outline disc = circle({0, 0}, 10.0);
@@ -259,7 +259,7 @@ TEST(Resolve, CurvesThatMeetInTangency) {
       }
     }
   }
-  // Crosses where it touches, to the third order.
+  // The curves cross where they touch, to third order.
   Outline cubic;
   cubic.move_to({-1, -1});
   cubic.curve_to(std::vector<Point2>{{-1.0 / 3.0, 1}, {1.0 / 3.0, -1}, {1, 1}});

@@ -16,10 +16,10 @@ namespace {
 bool are_beside(const std::vector<Outline>& outlines) {
   std::vector<const Outline*> pointers;
   for (const Outline& outline : outlines) pointers.push_back(&outline);
-  return are_side_by_side(pointers);
+  return have_disjoint_interiors(pointers);
 }
 
-// Cells of a grid whose corners are shaken, and whose sides are curves that cells share.
+// Cells of a grid with perturbed corners, and curved sides that cells share.
 class Map {
  public:
   explicit Map(int side) : side_(side) {
@@ -48,7 +48,7 @@ class Map {
 
  private:
   const Point2& corner(int x, int y) const { return corners_[y * (side_ + 1) + x]; }
-  // The side from a corner to the next one, in one of the two directions; of three kinds.
+  // The side from a corner to the next in one of two directions, of three kinds.
   void side(int x, int y, int dx, int dy, bool back, Outline* outline) const {
     const Point2& from = corner(x, y);
     const Point2& to = corner(x + dx, y + dy);
@@ -74,46 +74,46 @@ class Map {
   std::vector<Point2> bends_;
 };
 
-TEST(SharedEdges, OfAMapCancel) {
+TEST(SharedEdges, CancelInATiling) {
   const Map map(12);
   std::vector<Outline> cells = map.cells();
   EXPECT_TRUE(are_beside(cells));
-  // A hole in it, an enclave.
+  // A hole in a cell, and an enclave that fills it.
   const Outline enclave = cells[40];
   cells.erase(cells.begin() + 40);
   EXPECT_TRUE(are_beside(cells));
   cells.push_back(enclave);
   EXPECT_TRUE(are_beside(cells));
-  // Another one over it.
+  // A second cell over the enclave.
   cells.push_back(enclave);
   EXPECT_FALSE(are_beside(cells));
 }
 
-TEST(SharedEdges, DoNotHideWhatOverlaps) {
+TEST(SharedEdges, DoNotHideOverlaps) {
   const Map map(6);
   std::vector<Outline> cells = map.cells();
-  // All but for one that is moved a little, over its neighbor.
+  // One cell is moved slightly, over its neighbor.
   cells[14] = cells[14].transformed({{1.0, 0.0}, {0.0, 1.0}, {0.01, 0.0}});
   EXPECT_FALSE(are_beside(cells));
-  // One within another one, that shares nothing.
+  // A cell inside another one, without shared edges.
   cells = map.cells();
   cells.push_back(map.cell(2, 2).transformed({{0.1, 0.0}, {0.0, 0.1}, {2.3, 2.3}}));
   EXPECT_FALSE(are_beside(cells));
 }
 
-TEST(SharedEdges, AreThoseOfOneDirection) {
+TEST(SharedEdges, NeedOppositeDirections) {
   const Map map(2);
   const std::vector<Outline> twice = {map.cell(0, 0), map.cell(0, 0)};
   EXPECT_FALSE(are_beside(twice));
   std::vector<Outline> many(500, map.cell(0, 0));
   EXPECT_FALSE(are_beside(many));
-  // The hole of a ring is filled by what is in it, which winds the other way round.
+  // The hole of a ring is filled by a contour of the opposite direction.
   Outline ring = Map(1).cell(0, 0).transformed({{9.0, 0.0}, {0.0, 9.0}, {-4.0, -4.0}});
   append_contour(map.cell(0, 0), 0, true, &ring);
   EXPECT_TRUE(are_beside({ring, map.cell(0, 0)}));
 }
 
-TEST(SharedEdges, ClosesWhatIsOpen) {
+TEST(SharedEdges, CloseOpenContours) {
   Outline low;
   low.move_to({0.0, 0.0});
   low.line_to({1.0, 0.0});

@@ -72,7 +72,7 @@ TEST(StrokePieces, SidesAreAHalfWidthBesideTheCurve) {
       }
       EXPECT_NEAR(std::hypot(piece.begin_normal.x, piece.begin_normal.y), 1.0, 1e-12);
       if (piece.kind != StrokePiece::Kind::kCurve) {
-        // The curve leaves a flat piece's line by less than the tolerance.
+        // A flat piece deviates from the curve by less than the tolerance.
         EXPECT_LE(distance(fine, 0.5 * (piece.begin + piece.end)), kTolerance);
         continue;
       }
@@ -86,7 +86,8 @@ TEST(StrokePieces, SidesAreAHalfWidthBesideTheCurve) {
                                         piece.end - half_width * piece.end_normal});
       for (const Outline::Segment& segment : side.segments()) {
         for (const double t : {0.1, 0.3, 0.5, 0.7, 0.9}) {
-          // Others of the curve may be nearer, but nothing this far from all of it is beside it.
+          // Another part of the curve may be nearer, but the point is not beside any part that is
+          // farther than this.
           EXPECT_LE(distance(fine, bernstein(side, segment, t)), half_width + kTolerance);
         }
       }
@@ -100,11 +101,11 @@ std::ptrdiff_t cusps(const StrokePath& path) {
   return std::count_if(pieces.begin(), pieces.end(), [](const auto& p) { return p.is_cusp; });
 }
 
-TEST(StrokePieces, ACuspIsNoSmoothPlace) {
+TEST(StrokePieces, ACuspIsNotSmooth) {
   Outline way;
   way.move_to({0, 0});
   way.curve_to(std::vector<Point2>{{10, 10}, {0, 10}, {10, 0}});
-  StrokePath path;  // the cusp is at no binary fraction of it
+  StrokePath path;  // the cusp is at no dyadic fraction of the path
   path.curves.emplace_back(curve_of(way, way.segments()[0]), 0.0, 0.77);
   EXPECT_GE(cusps(path), 1);
   Outline smooth;
@@ -118,7 +119,7 @@ TEST(StrokeSides, CornersAreJoinedOnTheOutside) {
   expect_points(side_of(corner, -1.0, StrokeJoin::kMiter),
                 {{0, -1}, {10, -1}, {11, -1}, {11, 0}, {11, 10}});
   expect_points(side_of(corner, -1.0, StrokeJoin::kBevel), {{0, -1}, {10, -1}, {11, 0}, {11, 10}});
-  // The miter of a right angle is a root of 2 as long as the stroke is wide.
+  // The miter of a right angle is sqrt(2) times as long as the stroke is wide.
   expect_points(side_of(corner, -1.0, StrokeJoin::kMiter, 1.41),
                 {{0, -1}, {10, -1}, {11, 0}, {11, 10}});
   const Outline round = side_of(corner, -1.0, StrokeJoin::kRound);
@@ -146,8 +147,8 @@ TEST(StrokeSides, RoundJoinsGoAroundTheOutside) {
   }
 }
 
-TEST(StrokeSides, InsidesMeetWhereLinesAreLongEnough) {
-  // The offset lines of a right angle meet one offset before the corner.
+TEST(StrokeSides, InnerOffsetsMeetIfLinesAreLongEnough) {
+  // The offset lines of a right angle intersect one offset before the corner.
   expect_points(side_of(lines({{0, 0}, {10, 0}, {10, 10}}), 1.0, StrokeJoin::kMiter),
                 {{0, 1}, {9, 1}, {9, 10}});
   expect_points(side_of(lines({{0, 0}, {10, 0}, {10, 0.9}}), 1.0, StrokeJoin::kMiter),
@@ -170,8 +171,8 @@ TEST(StrokeSides, InsidesMeetWhereLinesAreLongEnough) {
                                                             {0, -1}});
 }
 
-// The side of a tight turn runs backward; what it winds around may count more than once, and never
-// negatively, so that the non-zero rule keeps it.
+// The side of a tight turn runs backward. It may wind more than once, but never negatively, so that
+// the non-zero rule fills it.
 TEST(StrokeSides, FoldsDoNotWindBackward) {
   Outline way;
   way.move_to({0, 0});
@@ -203,7 +204,7 @@ TEST(StrokeSides, CapsReachAHalfWidthBeyondTheEnd) {
   for (const StrokeCap cap : {StrokeCap::kButt, StrokeCap::kSquare, StrokeCap::kRound}) {
     Outline outline;
     outline.move_to({0, -3});
-    append_cap({0, 0}, {0, 1}, 3.0, cap, &outline);  // ahead is x
+    append_cap({0, 0}, {0, 1}, 3.0, cap, &outline);  // the path runs along x
     EXPECT_EQ(outline.points().back(), (Point2{0, 3}));
     outline.close();
     const double expected = cap == StrokeCap::kButt     ? 0.0

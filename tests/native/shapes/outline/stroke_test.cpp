@@ -18,7 +18,7 @@ constexpr double kPi = std::numbers::pi;
 
 std::vector<Chain> open_chains(const Outline& outline) {
   std::vector<Chain> chains = fine_chains(outline, 1000);
-  for (Chain& chain : chains) chain.pop_back();  // what closes it is not drawn
+  for (Chain& chain : chains) chain.pop_back();  // the closing line is not drawn
   return chains;
 }
 
@@ -30,7 +30,7 @@ StrokeOptions round_stroke(double width) {
   return options;
 }
 
-// With round joins and caps, what is covered is what is near.
+// A stroke with round joins and caps covers exactly the points within half its width.
 void expect_near_is_covered(const Outline& outline, double width, unsigned seed) {
   const Outline covered = stroke(outline, round_stroke(width));
   const std::vector<Chain> after = fine_chains(covered, 100);
@@ -54,7 +54,7 @@ Outline curve(std::vector<Point2> points) {
   return outline;
 }
 
-TEST(Stroke, CoversWhatIsNear) {
+TEST(Stroke, CoversPointsWithinHalfTheWidth) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(0.0, 100.0);
   for (unsigned seed = 0; seed < 12; ++seed) {
@@ -158,7 +158,7 @@ TEST(Stroke, ContoursOfNoLengthAreCaps) {
   EXPECT_NEAR(area(stroke(closed, options)), kPi, 1e-4);
 }
 
-TEST(Stroke, DashesGoByLength) {
+TEST(Stroke, DashesHaveTheirArcLength) {
   StrokeOptions options;
   options.width = 2.0;
   options.dashes = {10.0};
@@ -168,14 +168,14 @@ TEST(Stroke, DashesGoByLength) {
   Outline dashed = stroke(line, options);
   EXPECT_EQ(dashed.contour_count(), 3u);
   EXPECT_NEAR(area(dashed), 2.0 * 25.0, 1e-9);
-  options.dash_offset = 15.0;  // 5 of a gap first
+  options.dash_offset = 15.0;  // starts with 5 units of a gap
   dashed = stroke(line, options);
   EXPECT_EQ(dashed.contour_count(), 2u);
   EXPECT_NEAR(area(dashed), 2.0 * 20.0, 1e-9);
   options.dash_offset = -5.0;
   EXPECT_NEAR(area(stroke(line, options)), 2.0 * 20.0, 1e-9);
 
-  // A tenth of a circle each, the first of them half before the beginning, half behind it.
+  // A tenth of a circle each; the first lies half before the start and half after it.
   const double part = 2.0 * kPi * 50.0 / 20.0;
   options.dashes = {part, part};
   options.dash_offset = 0.5 * part;
@@ -194,8 +194,8 @@ TEST(Stroke, DashesGoByLength) {
   EXPECT_EQ(stroke(line, options).contour_count(), 1u);
 }
 
-TEST(Stroke, FarCurvesAreCutIntoFewPieces) {
-  // Pieces as fine as the tolerance would be finer than coordinates are.
+TEST(Stroke, DistantCurvesAreCutIntoFewPieces) {
+  // Pieces as fine as the tolerance would be finer than the coordinates.
   for (const double far : {1e13, 1e17, 1e31}) {
     Outline outline;
     outline.move_to({0.0, 0.0});
@@ -204,8 +204,8 @@ TEST(Stroke, FarCurvesAreCutIntoFewPieces) {
   }
 }
 
-TEST(Stroke, CurvesThatRoundingFoldsAreOnePiece) {
-  // As far away as it is, halves of an arc differ from each other by rounding alone.
+TEST(Stroke, CurvesFoldedByRoundingAreOnePiece) {
+  // At this distance from the origin, the halves of an arc differ only by rounding.
   constexpr double kFar = 9.1e21;
   Outline outline;
   outline.move_to({0.0, 0.0});
@@ -213,11 +213,11 @@ TEST(Stroke, CurvesThatRoundingFoldsAreOnePiece) {
   outline.conic_to({140.0, kFar}, std::sqrt(0.5), {140.0, kFar + 0x1p20});
   outline.conic_to({-57870.0, kFar + 0x1p20}, std::sqrt(0.5), {-57860.0, kFar});
   bool winds_once = false;
-  EXPECT_LT(stroke_soon(outline, {}, 1e-3, &winds_once).points().size(), 100U);
+  EXPECT_LT(stroke_within_budget(outline, {}, 1e-3, &winds_once).points().size(), 100U);
 }
 
-TEST(Stroke, LargeOutlinesAreSmallOnesScaled) {
-  // Products of their coordinates are not finite; powers of 2 change nothing else.
+TEST(Stroke, LargeOutlinesAreScaledDown) {
+  // Products of their coordinates overflow; scaling by powers of 2 changes nothing else.
   const auto wave = [](double size) {
     Outline outline;
     outline.move_to({2.0 * size, 0.0});
@@ -243,7 +243,7 @@ TEST(Stroke, LargeOutlinesAreSmallOnesScaled) {
   }
 }
 
-TEST(Stroke, BadOptionsAreTold) {
+TEST(Stroke, RefusesBadOptions) {
   const Outline line = curve({{0, 0}, {1000, 0}});
   const auto message = [&](const StrokeOptions& options) {
     try {

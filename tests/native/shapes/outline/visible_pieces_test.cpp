@@ -26,7 +26,7 @@ Outline blob(std::mt19937* random) {
   return outline;
 }
 
-// How much of every layer is seen at a point, by going down from the top; or by adding pieces.
+// Visibility of each layer at a point: from the top down, and by adding pieces.
 using Weights = std::vector<double>;
 
 class Scene {
@@ -48,11 +48,11 @@ class Scene {
 
   Weights expected(const Point2& point) const {
     Weights weights(outlines_.size(), 0.0);
-    double passing = 1.0;
+    double transmittance = 1.0;
     for (std::size_t i = outlines_.size(); i-- > 0;) {
       if (!filled(winding(chains_[i], point), rules_[i])) continue;
-      weights[i] = passing;
-      passing *= 1.0 - opacities_[i];
+      weights[i] = transmittance;
+      transmittance *= 1.0 - opacities_[i];
     }
     return weights;
   }
@@ -60,7 +60,7 @@ class Scene {
   void expect_pieces(double clearance = 1e-2) {
     for (const Outline& outline : outlines_) chains_.push_back(fine_chains(outline, 150));
     const std::vector<VisiblePiece> pieces =
-        visible_pieces(layers(), ArrangementEffort::kAny, 2).value();
+        visible_pieces(layers(), ArrangementEffort::kUnbounded, 2).value();
     std::vector<std::vector<Chain>> piece_chains;
     for (const VisiblePiece& piece : pieces)
       piece_chains.push_back(fine_chains(piece.outline, 150));
@@ -69,9 +69,10 @@ class Scene {
       for (std::size_t i = 0; i < pieces.size(); ++i) {
         const int inside = winding(piece_chains[i], point);
         ASSERT_TRUE(inside == 0 || inside == 1) << inside;
-        double passing = inside;
-        for (const std::uint32_t veil : pieces[i].veils) passing *= 1.0 - opacities_[veil];
-        found[pieces[i].layer] += passing;
+        double transmittance = inside;
+        for (const std::uint32_t overlay : pieces[i].overlays)
+          transmittance *= 1.0 - opacities_[overlay];
+        found[pieces[i].layer] += transmittance;
       }
       const Weights wanted = expected(point);
       for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -89,7 +90,7 @@ class Scene {
   Outline all_;
 };
 
-TEST(VisiblePieces, AddUpToWhatIsSeen) {
+TEST(VisiblePieces, AddUpToTheVisibleLayers) {
   for (unsigned seed = 0; seed < 6; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -108,28 +109,29 @@ TEST(VisiblePieces, NestedAndEqualLayers) {
   scene.add(circle({2, 0}, 3.0), FillRule::kNonzero, 0.5);
   scene.add(reversed(circle({2, 0}, 3.0)), FillRule::kNonzero, 0.5);
   scene.add(polygon({{-5, -5}, {0, -5}, {0, 0}, {-5, 0}}));
-  scene.add(polygon({{0, -5}, {5, -5}, {5, 0}, {0, 0}}));  // beside the one before
+  scene.add(polygon({{0, -5}, {5, -5}, {5, 0}, {0, 0}}));  // beside the previous one
   scene.add(circle({2, 0}, 3.0), FillRule::kEvenOdd, 0.0);
   scene.add(Outline());
   scene.expect_pieces();
 }
 
-TEST(VisiblePieces, WhatIsCoveredIsLeftOut) {
+TEST(VisiblePieces, LeaveOutCoveredShapes) {
   const Outline small = circle({0, 0}, 1.0);
   const Outline large = circle({0.1, 0}, 2.0);
   const std::vector<CoveringLayer> layers = {{&small}, {&large}};
-  const std::vector<VisiblePiece> pieces = visible_pieces(layers, ArrangementEffort::kAny).value();
+  const std::vector<VisiblePiece> pieces =
+      visible_pieces(layers, ArrangementEffort::kUnbounded).value();
   ASSERT_EQ(pieces.size(), 1u);
   EXPECT_EQ(pieces[0].layer, 1u);
-  EXPECT_TRUE(pieces[0].veils.empty());
+  EXPECT_TRUE(pieces[0].overlays.empty());
   ASSERT_EQ(pieces[0].outline.points().size(), large.points().size());
   EXPECT_TRUE(
       std::equal(large.points().begin(), large.points().end(), pieces[0].outline.points().begin()));
-  EXPECT_TRUE(visible_pieces({}, ArrangementEffort::kAny).value().empty());
+  EXPECT_TRUE(visible_pieces({}, ArrangementEffort::kUnbounded).value().empty());
 }
 
-// A contour that ends beside its beginning has a closing line as short as rounding, across another
-// shape's edge that ends there.
+// A contour that ends close to its start has a closing line as short as rounding, across an edge of
+// another shape that ends there.
 TEST(VisiblePieces, ClosingLinesAsShortAsRoundingMeetNothingFarAway) {
   for (const bool is_vertical : {true, false}) {
     for (const double above : {0.0, 0x1p-48, -0x1p-48}) {
@@ -163,16 +165,16 @@ TEST(VisiblePieces, AreTheSameForAnyNumberOfThreads) {
   for (int i = 0; i < 20; ++i) outlines.push_back(blob(&random));
   std::vector<CoveringLayer> layers;
   for (const Outline& outline : outlines) layers.push_back({&outline});
-  const auto one = visible_pieces(layers, ArrangementEffort::kAny, 1).value();
-  const auto four = visible_pieces(layers, ArrangementEffort::kAny, 4).value();
+  const auto one = visible_pieces(layers, ArrangementEffort::kUnbounded, 1).value();
+  const auto four = visible_pieces(layers, ArrangementEffort::kUnbounded, 4).value();
   ASSERT_EQ(one.size(), four.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_TRUE(std::equal(one[i].outline.points().begin(), one[i].outline.points().end(),
                            four[i].outline.points().begin(), four[i].outline.points().end()));
   }
-  EXPECT_THROW(
-      visible_pieces(layers, ArrangementEffort::kAny, 2, Progress([](double) { return false; })),
-      Error);
+  EXPECT_THROW(visible_pieces(layers, ArrangementEffort::kUnbounded, 2,
+                              Progress([](double) { return false; })),
+               Error);
 }
 
 TEST(SetOperations, AreasAddUp) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kRows = 3;
 
-// The same, with a value for each pixel from the start.
+// The reference: a value for each pixel from the start.
 struct PlainBand {
   PlainBand(int width_, int channels_, const ChannelValues& background)
       : width(width_), channels(channels_), values(width_ * kRows * channels_) {
@@ -36,7 +36,7 @@ void expect_equal(BandValues* found, const PlainBand& plain) {
   const std::size_t row_size = static_cast<std::size_t>(plain.width) * plain.channels;
   std::vector<float> floats(row_size);
   std::vector<std::uint8_t> bytes(row_size);
-  // Stored before their pixels are asked for, which gives all of them values of their own.
+  // Stored before pixels are requested, which would give them individual values.
   for (int row = 0; row < kRows; ++row) {
     const double* expected = plain.values.data() + row * row_size;
     found->store(row, floats.data());
@@ -54,13 +54,13 @@ void expect_equal(BandValues* found, const PlainBand& plain) {
   }
 }
 
-TEST(BandValues, AreThoseOfPixelsByThemselves) {
+TEST(BandValues, MatchIndividualPixels) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-0.2, 1.0);
   const auto any_color = [&] {
     return ChannelValues{unit(random), unit(random), unit(random), unit(random)};
   };
-  BandValues band;  // one after another of other sizes, as threads have them
+  BandValues band;  // reused for other sizes, as threads do
   for (int trial = 0; trial < 200; ++trial) {
     const int width = 1 + trial * 7 % 75;
     const int channels = 1 + trial % kMaxChannels;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The box filter's own way against a fine sampling of the outline, and its laws.
+// The box filter's fast path against fine sampling of the outline, and its laws.
 #include "prefilter/shapes/raster/box_coverage.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ std::vector<double> box_coverage(const std::vector<Outline>& outlines, Size size
   return values;
 }
 
-// By the way that serves all filters.
+// Coverage by the path for all filters.
 std::vector<double> general_coverage(const Outline& outline, Size size) {
   const CellFilter& filter = *find_cell_filter("box");
   EdgeList edges;
@@ -80,7 +80,7 @@ std::vector<double> general_coverage(const Outline& outline, Size size) {
 
 using Random = std::mt19937;
 
-// On a grid of 1/4 now and then, so that lines between pixels are met.
+// Sometimes on a grid of 1/4, so that points fall on lines between pixels.
 double coordinate(Random* random, double low, double high, bool on_grid) {
   const double value = std::uniform_real_distribution<double>(low, high)(*random);
   return on_grid ? std::round(4.0 * value) / 4.0 : value;
@@ -131,7 +131,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 
 class BoxKinds : public testing::TestWithParam<Kind> {};
 
-TEST_P(BoxKinds, AgreesWithTheGeneralWay) {
+TEST_P(BoxKinds, AgreesWithTheGeneralPath) {
   Random random(7);
   for (const auto& [low, high] :
        {std::pair(2.0, 20.0), std::pair(-30.0, 55.0), std::pair(9.0, 10.5), std::pair(-3e3, 3e3),
@@ -167,7 +167,7 @@ Outline reversed(const Outline& outline) {
   return out;
 }
 
-TEST_P(BoxKinds, TheOtherWayRoundLeavesNothing) {
+TEST_P(BoxKinds, ReversedOutlinesCancel) {
   Random random(8);
   for (int trial = 0; trial < 60; ++trial) {
     const double reach = trial % 2 == 0 ? 30.0 : 2.0;
@@ -221,9 +221,9 @@ TEST_P(BoxKinds, BytesAreRounded) {
   }
 }
 
-TEST(BoxCoverage, AFillRuleAndThreadsServeAnyOutline) {
+TEST(BoxCoverage, AnyOutlineByRuleAndThreads) {
   const Size size{600, 700};
-  Outline star;  // its middle winds twice
+  Outline star;  // its middle has winding number 2
   star.move_to({300.0, 650.0});
   for (const int corner : {2, 4, 1, 3}) {
     const double angle = 2.0 * std::numbers::pi * corner / 5;
@@ -241,14 +241,14 @@ TEST(BoxCoverage, AFillRuleAndThreadsServeAnyOutline) {
   EXPECT_EQ(draw(FillRule::kNonzero, 1), draw(FillRule::kNonzero, 3));
 }
 
-TEST(BoxCoverage, SizesThatAreNoneAreRefused) {
+TEST(BoxCoverage, RefusesInvalidSizes) {
   BoxRasterizer rasterizer;
   EXPECT_THROW(rasterizer.draw({}, {nullptr, 0, 4, 0}), Error);
   EXPECT_THROW(rasterizer.draw({}, {nullptr, 4, -1, 4}), Error);
-  EXPECT_THROW(rasterizer.draw({}, {nullptr, kMostBoxPixels + 1, 1, 0}), Error);
+  EXPECT_THROW(rasterizer.draw({}, {nullptr, kMaxBoxImageSide + 1, 1, 0}), Error);
 }
 
-TEST(BoxCoverage, PointsThatAreNoneAreRefused) {
+TEST(BoxCoverage, RefusesInvalidPoints) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
                            std::numeric_limits<double>::infinity(), -1.1e9}) {
     for (const bool is_curve : {false, true}) {

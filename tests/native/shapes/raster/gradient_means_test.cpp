@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Means of fine gradients against points by brute force, and means that are known.
+// Means of fine gradients against brute-force sampling, and against known means.
 #include "prefilter/shapes/raster/gradient_means.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ ChannelValues mean_of_points(const Paint& paint, const Point2& center) {
   return mean;
 }
 
-TEST(GradientMeans, ArePointsOnAverage) {
+TEST(GradientMeans, MatchSampledMeans) {
   for (const Spread spread : {Spread::kRepeat, Spread::kReflect}) {
     for (const double period : {0.3, 0.9, 2.5}) {
       const Paint paint = rings(period, spread);
@@ -48,7 +48,7 @@ TEST(GradientMeans, ArePointsOnAverage) {
       for (const Point2& center : {Point2{0.0, 0.0}, Point2{0.75, 0.25}, Point2{5.5, -2.25},
                                    Point2{40.5, 0.5}, Point2{-30.0, 30.0}}) {
         const ChannelValues expected = mean_of_points(paint, center);
-        const ChannelValues found = means.over_pixel(center);
+        const ChannelValues found = means.mean_over_pixel(center);
         for (std::size_t c = 0; c < 2; ++c) {
           EXPECT_NEAR(found[c], expected[c], 1.5 / 255.0)
               << period << " at " << center.x << ", " << center.y;
@@ -63,23 +63,23 @@ TEST(GradientMeans, TinyPeriodsHaveTheirMean) {
   for (const double period : {1e-3, 1e-7, 1e-14, 1e-100}) {
     const Paint paint = rings(period, Spread::kRepeat);
     const GradientMeans means(paint);
-    const ChannelValues found = means.over_pixel({12.5, 7.25});
+    const ChannelValues found = means.mean_over_pixel({12.5, 7.25});
     EXPECT_NEAR(found[0], 0.3125, 1e-3) << period;
     EXPECT_NEAR(found[1], 0.75, 1e-3) << period;
   }
 }
 
-// What a parallelogram shows of values that are linear in the offset, far from all stops.
+// The mean over a parallelogram is exact where values are linear in the offset.
 TEST(GradientMeans, AreExactBetweenStops) {
   Paint paint = rings(100.0, Spread::kPad);
   const GradientMeans means(paint);
-  const ChannelValues found = means.over({62.5, 0.0}, {2.0, 0.0}, {0.0, 1e-9});
+  const ChannelValues found = means.mean_over({62.5, 0.0}, {2.0, 0.0}, {0.0, 1e-9});
   EXPECT_NEAR(found[0], 0.25, 1e-12);
   EXPECT_NEAR(found[1], 0.875, 1e-12);
-  EXPECT_NEAR(means.over({1e6, 0.0}, {2.0, 0.0}, {0.0, 1.0})[1], 0.75, 1e-12);
+  EXPECT_NEAR(means.mean_over({1e6, 0.0}, {2.0, 0.0}, {0.0, 1.0})[1], 0.75, 1e-12);
 }
 
-// However fine stops are, there is nothing more to cut.
+// A gradient with fine stops has no cutter.
 TEST(GradientMeans, FineStopsCutNothing) {
   const Box2 box{{0.0, 0.0}, {512.0, 512.0}};
   EXPECT_TRUE(gradient_cutter(rings(0.5, Spread::kRepeat), box).empty());

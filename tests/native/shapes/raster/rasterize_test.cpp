@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Whole images in C++, so that the sanitizers see them: areas, laws, and what is nasty.
+// Whole images in C++, so that they run under the sanitizers: areas, laws, and degenerate inputs.
 #include "prefilter/shapes/rasterize.h"
 
 #include <gtest/gtest.h>
@@ -61,14 +61,14 @@ double sum_of(const std::vector<float>& values) {
 TEST(Rasterize, KeepsAreas) {
   Shape shape;
   shape.outline = circle({20.3, 17.1}, 11.0);
-  // Filters that add up to 1 around every point.
+  // Filters that sum to 1 around every point.
   for (const std::string_view filter : {"box", "tent", "bspline2", "mitchell"}) {
     const double sum = sum_of(values_of({shape}, options_of(48, 40, filter)));
     EXPECT_NEAR(sum, std::numbers::pi * 121.0, 1e-4) << filter;
   }
 }
 
-TEST(Rasterize, IsConstantWhereAShapeIsAllAround) {
+TEST(Rasterize, IsConstantDeepInsideAShape) {
   Shape shape;
   shape.outline = circle({3.0, 2.0}, 1e6);
   shape.paint.constant[0] = 0.3;
@@ -79,7 +79,7 @@ TEST(Rasterize, IsConstantWhereAShapeIsAllAround) {
   }
 }
 
-// Many kinds of curves, over several bands of rows and beyond all sides of the image.
+// Curves of many kinds, over several bands of rows and beyond all sides of the image.
 std::vector<Shape> scene() {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> place(-30.0, 330.0);
@@ -124,7 +124,7 @@ TEST(Rasterize, GivesTheSameWithAnyNumberOfThreads) {
   }
 }
 
-TEST(Rasterize, TakesWhatHasNoArea) {
+TEST(Rasterize, AcceptsShapesWithoutArea) {
   std::vector<Shape> shapes(6);
   shapes[1].outline.move_to({1.0, 1.0});
   shapes[2].outline = polygon({{1.0, 1.0}});
@@ -149,7 +149,7 @@ TEST(Rasterize, TakesCoordinatesUpToTheLimit) {
   }
 }
 
-TEST(Rasterize, RefusesWhatIsNoNumberOrTooFar) {
+TEST(Rasterize, RefusesInvalidCoordinates) {
   for (const double value : {std::numeric_limits<double>::quiet_NaN(),
                              std::numeric_limits<double>::infinity(), 1.001e9, -1.001e9}) {
     Shape shape;
@@ -174,8 +174,8 @@ TEST(Rasterize, TakesManyVerticesInsideOfAPixel) {
   EXPECT_NEAR(sum, std::numbers::pi * 0.45 * 0.45, 2e-6);
 }
 
-// There is code for degrees 0 to 3 and for the highest one, whose other coefficients are zero.
-TEST(CellFilters, OfKernelsOfAnyDegreeAreRasterized) {
+// Code is instantiated for degrees 0 to 3 and for the highest one; others are padded with zeros.
+TEST(CellFilters, RasterizeKernelsOfAnyDegree) {
   for (int degree = 0; degree <= Kernel::kMostDegree; ++degree) {
     const Kernel kernel("any", 2.0, 1.0, degree, [](double x) { return std::exp(-x * x); });
     const CellFilter filter = cell_filter(kernel);

@@ -15,7 +15,7 @@ bool meet(const Box2& a, const Box2& b) {
   return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
 }
 
-TEST(ShapeGroups, HoldAllThatMeets) {
+TEST(ShapeGroups, ContainAllOverlappingBoxes) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   for (const double size : {0.005, 0.02, 0.06, 0.5}) {
@@ -25,7 +25,7 @@ TEST(ShapeGroups, HoldAllThatMeets) {
       box = {low, low + Point2{size * unit(random), size * unit(random)}};
     }
     boxes[17] = {};
-    const auto groups = groups_apart(boxes);
+    const auto groups = overlapping_groups(boxes);
     std::vector<int> group_of(boxes.size(), -1);
     for (std::size_t g = 0; g < groups.size(); ++g) {
       EXPECT_TRUE(std::is_sorted(groups[g].begin(), groups[g].end()));
@@ -43,8 +43,8 @@ TEST(ShapeGroups, HoldAllThatMeets) {
   }
 }
 
-// On a grid all are by themselves, and on one where neighbors touch they are together.
-TEST(ShapeGroups, AreOfOneWhereNothingMeets) {
+// On a sparse grid each box is its own group; on one where neighbors touch all are one group.
+TEST(ShapeGroups, SeparateBoxesAreAlone) {
   for (const double side : {0.9, 1.0}) {
     std::vector<Box2> boxes;
     for (int i = 0; i < 400; ++i) {
@@ -52,9 +52,9 @@ TEST(ShapeGroups, AreOfOneWhereNothingMeets) {
       const Point2 low{static_cast<double>(place % 20), static_cast<double>(place / 20)};
       boxes.push_back({low, low + Point2{side, side}});
     }
-    EXPECT_EQ(groups_apart(boxes).size(), side < 1.0 ? 400U : 1U);
+    EXPECT_EQ(overlapping_groups(boxes).size(), side < 1.0 ? 400U : 1U);
   }
-  EXPECT_TRUE(groups_apart({}).empty());
+  EXPECT_TRUE(overlapping_groups({}).empty());
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Stacks of layers against what is resolved as outlines, and where too much crosses for that,
-// against points by brute force.
+// Stacks of layers against resolved outlines or, where too many curves cross, against brute-force
+// sampling.
 #include "prefilter/shapes/raster/stack_rows.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "prefilter/shapes/outline/arrangement.h"
-#include "prefilter/shapes/outline/resolve_soon.h"
+#include "prefilter/shapes/outline/resolve_within_budget.h"
 #include "prefilter/shapes/outline/visible_pieces.h"
 #include "prefilter/shapes/raster/composited_rows.h"
 #include "prefilter/shapes/raster/parabolas.h"
@@ -36,7 +36,7 @@ struct Drawn {
 template <int N>
 Drawn drawn(const std::vector<Shape>& shapes, std::string_view filter, int width, int height,
             std::size_t sweep_steps = StackRows<N>::kSweepSteps) {
-  const LayerStack stack = stack_of(shapes);
+  const LayerStack stack = make_stack(shapes);
   const int channels = shapes.front().paint.channels;
   StackRows<N> rows(stack, *find_cell_filter(filter), kBackground, channels, width, height,
                     sweep_steps);
@@ -59,7 +59,7 @@ Paint painted(std::mt19937* random, double alpha) {
   return paint;
 }
 
-// Curves all over a square.
+// Curves across a square.
 Outline tangle(std::mt19937* random, int curves, double side) {
   std::uniform_real_distribution<double> place(-0.1 * side, 1.1 * side);
   const auto point = [&] { return Point2{place(*random), place(*random)}; };
@@ -92,18 +92,18 @@ std::vector<Shape> tangles(int count, int curves, double side, double alpha, uns
   return shapes;
 }
 
-// What is seen at a point, by winding numbers from the top.
+// The composited color at a point, by winding numbers from the top.
 class Points {
  public:
   explicit Points(const std::vector<Shape>& shapes) : shapes_(shapes) {
     for (const Shape& shape : shapes) chains_.push_back(fine_chains(shape.outline, 60));
   }
 
-  // The means over a pixel.
+  // Means over a pixel.
   ChannelValues means(int x, int y, int count) const {
     ChannelValues sums{};
     for (int i = 0; i < count; ++i) {
-      // No rows and columns, which edges along them would pass all at once.
+      // Not on rows and columns, which axis-aligned edges would pass all at once.
       const double u = (i + 0.5) / count;
       const double v = std::fmod(i * 0.6180339887498949 + 0.25, 1.0);
       const ChannelValues value = at({x + u, y + v});
@@ -115,14 +115,14 @@ class Points {
  private:
   ChannelValues at(const Point2& point) const {
     ChannelValues value{};
-    double passing = 1.0;
-    for (std::size_t i = shapes_.size(); i-- > 0 && passing > 1e-9;) {
+    double transmittance = 1.0;
+    for (std::size_t i = shapes_.size(); i-- > 0 && transmittance > 1e-9;) {
       if (!filled(winding(chains_[i], point), shapes_[i].fill_rule)) continue;
       const ChannelValues& color = shapes_[i].paint.constant;
-      for (std::size_t c = 0; c < value.size(); ++c) value[c] += passing * color[c];
-      passing *= 1.0 - color[3];
+      for (std::size_t c = 0; c < value.size(); ++c) value[c] += transmittance * color[c];
+      transmittance *= 1.0 - color[3];
     }
-    for (std::size_t c = 0; c < value.size(); ++c) value[c] += passing * kBackground[c];
+    for (std::size_t c = 0; c < value.size(); ++c) value[c] += transmittance * kBackground[c];
     return value;
   }
 
@@ -130,23 +130,24 @@ class Points {
   std::vector<std::vector<Chain>> chains_;
 };
 
-// What is seen of each shape as outlines that are only added up. Colors are opaque where they
-// change.
+// The visible part of each shape, as outlines that are only added. Colors are opaque where they
+// vary.
 Image of_visible_pieces(const std::vector<Shape>& shapes, std::string_view filter, int side) {
   std::vector<CoveringLayer> layers;
   for (const Shape& shape : shapes) {
     layers.push_back({&shape.outline, shape.fill_rule, shape.paint.constant[3] >= 1.0});
   }
-  const auto pieces = visible_pieces(layers, ArrangementEffort::kAny);
+  const auto pieces = visible_pieces(layers, ArrangementEffort::kUnbounded);
   EXPECT_TRUE(pieces);
   std::vector<Shape> apart;
   for (const VisiblePiece& piece : *pieces) {
-    double passing = 1.0;
-    for (const std::uint32_t veil : piece.veils) passing *= 1.0 - shapes[veil].paint.constant[3];
+    double transmittance = 1.0;
+    for (const std::uint32_t overlay : piece.overlays)
+      transmittance *= 1.0 - shapes[overlay].paint.constant[3];
     Paint paint = shapes[piece.layer].paint;
     const double alpha = paint.constant[3];
     for (std::size_t c = 0; c < paint.constant.size(); ++c) {
-      paint.constant[c] = passing * (paint.constant[c] - alpha * kBackground[c]);
+      paint.constant[c] = transmittance * (paint.constant[c] - alpha * kBackground[c]);
     }
     apart.push_back({piece.outline, FillRule::kNonzero, paint, true});
   }
@@ -174,7 +175,7 @@ void expect_like_outlines(const std::vector<Shape>& shapes, std::string_view fil
   }
 }
 
-TEST(StackRows, SweptCellsAreWhatOutlinesAre) {
+TEST(StackRows, SweptCellsMatchResolvedOutlines) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const double alpha = seed % 2 == 0 ? 1.0 : 0.4;
     const std::vector<Shape> shapes = tangles(4, 6, 40.0, alpha, seed);
@@ -186,7 +187,7 @@ TEST(StackRows, SweptCellsAreWhatOutlinesAre) {
 }
 
 TEST(StackRows, CurvesThatCrossTwiceInACell) {
-  // x - y is 0.8 t (1 - t) along a curve, and 0.1 along a line: they cross at 0.15 and 0.85.
+  // x - y is 0.8 t (1 - t) along a curve and 0.1 along a line: they cross at 0.15 and 0.85.
   const auto closed = [](Outline outline) {
     outline.line_to({2.5, outline.points().back().y});
     outline.line_to({2.5, 1.05});
@@ -217,7 +218,7 @@ TEST(StackRows, LinearColorsAreExact) {
     shape.paint.along_x = {0.01, -0.005, 0.002, 0.0};
     shape.paint.along_y = {-0.003, 0.004, 0.006, 0.0};
   }
-  // Curves are told by parabolas.
+  // Curves are approximated by parabolas.
   expect_like_outlines<0>(shapes, "box", 30, 1e-5);
   expect_like_outlines<3>(shapes, "mitchell", 30, 1e-5);
 }
@@ -232,7 +233,7 @@ Outline box(const Point2& low, const Point2& high) {
   return outline;
 }
 
-TEST(StackRows, LevelEdgesGoOnThroughCells) {
+TEST(StackRows, HorizontalEdgesCrossManyCells) {
   std::mt19937 random(12);
   std::uniform_real_distribution<double> place(-2.0, 32.0);
   std::vector<Shape> shapes;
@@ -250,8 +251,8 @@ TEST(StackRows, LevelEdgesGoOnThroughCells) {
   expect_like_outlines<3>(shapes, "mitchell", 30);
 }
 
-// Boxes all over the place, over curves, until nothing passes.
-TEST(StackRows, WhatIsHiddenIsLeftOut) {
+// Boxes in random places, over curves, until nothing below is visible.
+TEST(StackRows, HiddenLayersAreSkipped) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> place(0.0, 20.0);
   for (const double alpha : {1.0, 0.75}) {
@@ -274,7 +275,7 @@ TEST(StackRows, WhatIsHiddenIsLeftOut) {
   }
 }
 
-TEST(StackRows, WhatIsHiddenEndsWithWhatHidesIt) {
+TEST(StackRows, HidingEndsWithTheOpaqueLayer) {
   std::mt19937 random(6);
   const Paint behind = painted(&random, 1.0);
   std::vector<Shape> shapes = {{box({-5.0, -5.0}, {28.0, 40.0}), FillRule::kEvenOdd, behind}};
@@ -288,8 +289,8 @@ TEST(StackRows, WhatIsHiddenEndsWithWhatHidesIt) {
   }
 }
 
-// Far inside of what winds around it several times, other curves change nothing.
-TEST(StackRows, WindingNumbersThatNothingCancelsFill) {
+// Deep inside a shape with a high winding number, other curves have no effect.
+TEST(StackRows, HighWindingNumbersFillWholeCells) {
   std::mt19937 random(4);
   Outline outline;
   for (int i = 0; i < 9; ++i) outline.append(box({-3.5 - i, -3.5}, {33.5, 33.25 + i}));
@@ -300,27 +301,28 @@ TEST(StackRows, WindingNumbersThatNothingCancelsFill) {
   for (const double value : found.values) ASSERT_NEAR(value, 1.0, 1e-6);
 }
 
-// Put over each other by what they cover of pixels, those with a mark cell by cell. Where
-// `is_told`, outlines are known to wind once. Returns the values, and how many cells were swept.
-Drawn composited(const std::vector<Shape>& shapes, int side, bool is_told) {
+// Composites by pixel coverage, and marked pixels cell by cell. If `are_known_to_wind_once`,
+// outlines are known to wind once. Returns the values, and the number of swept cells.
+Drawn composited(const std::vector<Shape>& shapes, int side, bool are_known_to_wind_once) {
   std::vector<Outline> outlines;
   for (const Shape& shape : shapes) {
     std::optional<Outline> changed;
-    if (is_told) {
-      EXPECT_TRUE(resolve_soon(shape.outline, shape.fill_rule, {}, &changed));
+    if (are_known_to_wind_once) {
+      EXPECT_TRUE(resolve_within_budget(shape.outline, shape.fill_rule, {}, &changed));
     }
     outlines.push_back(changed ? *changed : shape.outline);
   }
   std::vector<StackShape> of_stack;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    of_stack.push_back({&outlines[i], shapes[i].fill_rule, &shapes[i].paint, is_told});
+    of_stack.push_back(
+        {&outlines[i], shapes[i].fill_rule, &shapes[i].paint, are_known_to_wind_once});
   }
-  const LayerStack stack = stack_of(of_stack);
+  const LayerStack stack = make_stack(of_stack);
   BandValues values;
   values.reset(side, side, 4, kBackground);
   CompositedRows rows(stack, side, 4);
   StackRows<0> cells(stack, *find_cell_filter("box"), kBackground, 4, side, side);
-  rows.put_over(0, side, kBackground, &values);
+  rows.composite_over(0, side, kBackground, &values);
   cells.add_marked(0, side, rows, &values);
   Drawn out{{}, cells.work()};
   for (int row = 0; row < side; ++row) {
@@ -331,23 +333,23 @@ Drawn composited(const std::vector<Shape>& shapes, int side, bool is_told) {
 
 void expect_composited_like_outlines(const std::vector<Shape>& shapes, int side) {
   const Image expected = of_visible_pieces(shapes, "box", side);
-  for (const bool is_told : {true, false}) {
-    const Drawn found = composited(shapes, side, is_told);
+  for (const bool are_known_to_wind_once : {true, false}) {
+    const Drawn found = composited(shapes, side, are_known_to_wind_once);
     EXPECT_EQ(found.work.sampled_cells, 0u);
     for (std::size_t i = 0; i < found.values.size(); ++i) {
-      ASSERT_NEAR(found.values[i], expected.data[i], 1e-6) << is_told << " " << i;
+      ASSERT_NEAR(found.values[i], expected.data[i], 1e-6) << are_known_to_wind_once << " " << i;
     }
   }
 }
 
-TEST(CompositedRows, AreWhatOutlinesAre) {
+TEST(CompositedRows, MatchResolvedOutlines) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     const double alpha = seed % 2 == 0 ? 1.0 : 0.4;
     expect_composited_like_outlines(tangles(5, 6, 45.0, alpha, seed), 45);
   }
 }
 
-// Level edges make no difference from pixel to pixel, and end beyond the image.
+// Horizontal edges cause no differences along a row, and end beyond the image.
 TEST(CompositedRows, LevelEdges) {
   std::mt19937 random(8);
   std::uniform_real_distribution<double> place(-6.0, 36.0);
@@ -365,21 +367,21 @@ TEST(CompositedRows, LevelEdges) {
   }
 }
 
-TEST(CompositedRows, OnlyCellsWhereOutlinesMeetAreSwept) {
+TEST(CompositedRows, OnlyCellsWithSeveralOutlinesAreSwept) {
   std::mt19937 random(3);
   const auto shape = [&](const Outline& outline) {
     return Shape{outline, FillRule::kNonzero, painted(&random, 1.0)};
   };
-  // Two edges of the second box are over the first one's area, and cross its edges in two cells.
+  // Two edges of the second box are inside the first, and cross its edges in two cells.
   const Shape first = shape(box({2.5, 2.5}, {20.5, 20.5}));
   const Shape second = shape(box({10.5, 10.5}, {28.5, 28.5}));
   EXPECT_EQ(composited({first, second}, 30, true).work.swept_cells, 2u);
-  // What is over both leaves nothing to look at.
+  // Under a full layer no cell is marked.
   const Shape third = shape(box({1.0, 1.0}, {29.0, 29.0}));
   EXPECT_EQ(composited({first, second, third}, 30, true).work.swept_cells, 0u);
 }
 
-TEST(Parabolas, AreWhereCurvesAre) {
+TEST(Parabolas, StayCloseToCurves) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> place(0.0, 30.0);
   double heights = 0.0;
@@ -407,7 +409,7 @@ TEST(Parabolas, AreWhereCurvesAre) {
         heights += parabola.high.y - parabola.low.y;
       }
       heights -= std::fabs(piece.end.y - piece.begin.y);
-      // Where it does not matter they are chords.
+      // Chords where the curve is not visible.
       parabolas.clear();
       append_parabolas(
           piece, [](const Point2&, const Point2&) { return false; }, &parabolas);
@@ -417,8 +419,8 @@ TEST(Parabolas, AreWhereCurvesAre) {
   EXPECT_NEAR(heights, 0.0, 1e-9);
 }
 
-// For half planes in a cell: the share of it, and that of its samples.
-// A half-plane in one pixel, far beyond it on the other sides.
+// The covered fraction of a cell by a half plane, and the fraction of covered samples. The half
+// plane ends in one pixel, and extends far beyond it on the other sides.
 Outline half_plane(const Point2& across, double height) {
   const Point2 along{-across.y, across.x};
   const Point2 center{0.5, 0.5};
@@ -431,7 +433,7 @@ Outline half_plane(const Point2& across, double height) {
   return outline;
 }
 
-TEST(SampleBits, NoEdgeIsOffByMoreThanAStepOfBytes) {
+TEST(SampleBits, EdgeErrorsStayBelowOneByteStep) {
   double worst = 0.0;
   double squares = 0.0;
   int count = 0;
@@ -439,7 +441,7 @@ TEST(SampleBits, NoEdgeIsOffByMoreThanAStepOfBytes) {
   std::uniform_real_distribution<double> unit(-0.5, 0.5);
   const auto compare = [&](double turn) {
     const Point2 across{std::cos(turn), std::sin(turn)};
-    // The integral of a trapezoid: how long a line at a height is in the cell.
+    // The integral of a trapezoid: the length of a line in the cell at each height.
     const double a = std::max(1e-9, std::min(std::fabs(across.x), std::fabs(across.y)));
     const double b = std::max(std::fabs(across.x), std::fabs(across.y));
     const auto square = [](double x) { return x > 0.0 ? x * x : 0.0; };
@@ -464,13 +466,13 @@ TEST(SampleBits, NoEdgeIsOffByMoreThanAStepOfBytes) {
     compare(std::atan(i / 128.0));
     compare(std::atan(i / 128.0) + 1.5707963267948966);
   }
-  // Of full contrast it is 4/3 of that.
+  // The error at full contrast is 4/3 of that.
   EXPECT_LE(worst / 0.75, 1.0 / 255.0);
   EXPECT_LE(std::sqrt(squares / count) / 0.75, 1.0 / 1500.0);
 }
 
-// All that cells are sampled for, where there is little enough for a sweep.
-TEST(StackRows, SampledCellsAreWhatSweptOnesAre) {
+// Shapes for which cells are sampled, small enough for a sweep.
+TEST(StackRows, SampledCellsMatchSweptCells) {
   constexpr std::size_t kAll = std::size_t{1} << 40;
   for (unsigned seed = 1; seed <= 6; ++seed) {
     const double alpha = seed % 2 == 0 ? 1.0 : 0.3;
@@ -494,8 +496,8 @@ TEST(StackRows, SampledCellsAreWhatSweptOnesAre) {
   }
 }
 
-// Lines next to each other, almost along the rows of samples and almost across.
-TEST(StackRows, SampledHatchesAreWhatSweptOnesAre) {
+// Adjacent lines, almost along the rows of samples and almost across.
+TEST(StackRows, SampledHatchesMatchSweptHatches) {
   for (const double slope : {0.001, 0.004, 0.03, 0.2}) {
     Outline along;
     Outline across;
@@ -518,14 +520,14 @@ TEST(StackRows, SampledHatchesAreWhatSweptOnesAre) {
   }
 }
 
-// Translucent layers of one outline, which cells take as one.
-TEST(StackRows, EqualLayersAreOne) {
+// Translucent layers with one outline, which cells treat as one layer.
+TEST(StackRows, EqualLayersAreMerged) {
   std::mt19937 random(7);
   const Outline once = tangle(&random, 5, 8.0);
   Paint paint = painted(&random, 0.1);
   Paint whole = paint;
-  const double passing = std::pow(0.9, 300);
-  for (int c = 0; c < 4; ++c) whole.constant[c] *= (1.0 - passing) / 0.1;
+  const double transmittance = std::pow(0.9, 300);
+  for (int c = 0; c < 4; ++c) whole.constant[c] *= (1.0 - transmittance) / 0.1;
   const std::vector<Shape> many(300, Shape{once, FillRule::kNonzero, paint});
   const Drawn expected = drawn<0>({{once, FillRule::kNonzero, whole}}, "box", 8, 8);
   const Drawn found = drawn<0>(many, "box", 8, 8);
@@ -537,7 +539,7 @@ TEST(StackRows, EqualLayersAreOne) {
 
 TEST(StackRows, SampledCellsAreCloseToPoints) {
   for (const double alpha : {1.0, 0.2}) {
-    // All of it within a few pixels.
+    // All of them within a few pixels.
     const std::vector<Shape> shapes = tangles(60, 9, 3.0, alpha, 5);
     const Drawn found = drawn<0>(shapes, "box", 3, 3);
     EXPECT_GT(found.work.sampled_cells, 4u);
@@ -568,7 +570,7 @@ TEST(StackRows, SampledMomentsServeOtherFilters) {
   EXPECT_NEAR(box_sum / 16.0, tent_sum / 16.0, 0.02);
 }
 
-// The bounds are of steps, which no machine changes.
+// The bounds are in steps, which do not depend on the machine.
 TEST(StackRows, WorkIsBounded) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(0.0, 64.0);
@@ -581,7 +583,7 @@ TEST(StackRows, WorkIsBounded) {
       lines.close();
     }
     std::optional<Outline> changed;
-    EXPECT_FALSE(resolve_soon(lines, FillRule::kNonzero, {}, &changed));
+    EXPECT_FALSE(resolve_within_budget(lines, FillRule::kNonzero, {}, &changed));
     Paint paint;
     const Drawn found = drawn<0>({{lines, FillRule::kNonzero, paint}}, "box", 64, 64);
     EXPECT_GT(found.work.sampled_cells, 100u);
@@ -589,9 +591,9 @@ TEST(StackRows, WorkIsBounded) {
   }
 }
 
-// Few enough to be looked at, but all of them meet: a grid of slices between curves and their
+// Few enough to be examined, but all of them cross: a grid of slices between curves and their
 // chords.
-TEST(StackRows, MeetingsOfCurvesAreBounded) {
+TEST(StackRows, IntersectionsOfCurvesAreBounded) {
   Outline grid;
   for (int i = 0; i < 60; ++i) {
     grid.move_to({i + 0.5, 0.0});
@@ -602,13 +604,13 @@ TEST(StackRows, MeetingsOfCurvesAreBounded) {
     grid.close();
   }
   const std::vector<const Outline*> outlines{&grid};
-  Arrangement bounded(outlines, kPrecisions[0]);
+  Arrangement bounded(outlines, kArrangementPrecisions[0]);
   EXPECT_EQ(bounded.cut(ArrangementEffort::kBounded, {}), CutOutcome::kTooMany);
-  Arrangement whole(outlines, kPrecisions[0]);
-  EXPECT_EQ(whole.cut(ArrangementEffort::kAny, {}), CutOutcome::kCut);
+  Arrangement whole(outlines, kArrangementPrecisions[0]);
+  EXPECT_EQ(whole.cut(ArrangementEffort::kUnbounded, {}), CutOutcome::kCut);
 }
 
-TEST(StackRows, EqualContoursAreOne) {
+TEST(StackRows, EqualContoursAreMerged) {
   std::mt19937 random(8);
   const Outline once = tangle(&random, 5, 8.0);
   Outline many;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Numbers for keys, in the order in which they come.
+// Assigns consecutive indices to 64-bit keys.
 #pragma once
 
 #include <algorithm>
@@ -11,17 +11,17 @@
 
 namespace prefilter {
 
-class KeyNumbers {
+class KeyIndex {
  public:
-  KeyNumbers() : slots_(64, kEmpty) {}
+  KeyIndex() : slots_(64, kEmpty) {}
 
   void clear() {
     keys_.clear();
     std::fill(slots_.begin(), slots_.end(), kEmpty);
   }
   std::span<const std::uint64_t> keys() const { return keys_; }
-  /// That of a key: a new one is the number of those before it.
-  std::uint32_t number_of(std::uint64_t key) {
+  /// Index of a key; a new key gets the next index.
+  std::uint32_t index_of(std::uint64_t key) {
     if (2 * keys_.size() >= slots_.size()) grow();
     const std::size_t slot = slot_of(key);
     if (slots_[slot] == kEmpty) {

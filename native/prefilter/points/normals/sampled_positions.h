@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Some points of a cloud, to find out what it is like.
+// A subset of a cloud for statistics.
 #pragma once
 
 #include <algorithm>
@@ -13,16 +13,16 @@
 
 namespace prefilter {
 
-/// Distinct finite positions, sorted, from at most so many of the points: each second one, or
-/// third, and so on.
-inline std::vector<Vector3> some_points(std::span<const Vector3> points, std::size_t most) {
+/// Distinct finite positions in sorted order, from every n-th point so that there are at most
+/// `most`.
+inline std::vector<Vector3> sample_positions(std::span<const Vector3> points, std::size_t most) {
   std::vector<Vector3> result;
   const std::size_t step = (points.size() + most - 1) / most;
   for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(step, 1)) {
     const Vector3& p = points[i];
     if (std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]) <= kLargestCoordinate) result.push_back(p);
   }
-  // Copies of a point say no more of the shape than one.
+  // Copies of a point add no information about the shape.
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/shapes/outline/meetings.h"
+// Intersections of two monotone curve pieces by recursive subdivision: control hulls that are
+// disjoint are dropped, and Newton's iteration converges on the intersection of transversal pieces.
+#include "prefilter/shapes/outline/curve_intersections.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +13,8 @@
 namespace prefilter {
 namespace {
 
-constexpr int kMostSteps = 20000;
+// Bounds the subdivision of two pieces that touch or almost overlap.
+constexpr int kMaxSearchSteps = 20000;
 
 double distance(const Point2& a, const Point2& b) { return length(a - b); }
 
@@ -40,7 +43,7 @@ bool boxes_meet(std::span<const Point2> a, std::span<const Point2> b, double mar
          first.low.y <= second.high.y + margin && second.low.y <= first.high.y + margin;
 }
 
-// Whether the line through the ends of `a` has both hulls on different sides.
+// Whether the control hulls lie on different sides of the line through the ends of `a`.
 bool chord_separates(std::span<const Point2> a, std::span<const Point2> b, double margin) {
   const Point2 direction = a.back() - a.front();
   const double apart = margin * (std::fabs(direction.x) + std::fabs(direction.y));
@@ -55,17 +58,17 @@ bool hulls_apart(std::span<const Point2> a, std::span<const Point2> b, double ma
          chord_separates(b, a, margin);
 }
 
-// A part of a curve with its control points, halved again and again.
-class Cell {
+// Part of a curve with its control points, halved recursively.
+class CurveCell {
  public:
-  explicit Cell(const CurvePiece& piece)
+  explicit CurveCell(const CurvePiece& piece)
       : from_(piece.from), to_(piece.to), points_(piece.controls) {
     const Curve& curve = piece.curve;
     if (curve.weight > 0.0) {
       is_conic_ = true;
       weights_ = {1.0, curve.weight, 1.0};
       if (from_ > 0.0 || to_ < 1.0) {
-        // Of the whole conic in homogeneous coordinates, the blossom at both parameters.
+        // The weights of a part of a conic are the blossom of the whole conic's weights.
         const double w = curve.weight;
         const auto blossom = [w](double s, double t) {
           return (1.0 - s) * (1.0 - t) + ((1.0 - s) * t + s * (1.0 - t)) * w + s * t;
@@ -86,7 +89,7 @@ class Cell {
     return std::max(std::fabs(chord.x), std::fabs(chord.y));
   }
   bool is_line() const { return points_.size() == 2; }
-  /// How far the control points are off the chord.
+  /// Largest distance of a control point from the chord's line.
   double thickness() const {
     if (is_line()) return 0.0;
     const Point2 chord = end() - begin();
@@ -94,8 +97,8 @@ class Cell {
     return std::max(range.high, -range.low) / length(chord);
   }
 
-  std::array<Cell, 2> halves() const {
-    std::array<Cell, 2> parts = {*this, *this};
+  std::array<CurveCell, 2> halves() const {
+    std::array<CurveCell, 2> parts = {*this, *this};
     auto& [first, second] = parts;
     first.to_ = second.from_ = middle();
     if (is_conic_) {
@@ -113,7 +116,7 @@ class Cell {
   }
 
  private:
-  void split_conic(Cell* first, Cell* second) const {
+  void split_conic(CurveCell* first, CurveCell* second) const {
     const double left = weights_[0] + weights_[1];
     const double right = weights_[1] + weights_[2];
     const double whole = left + right;
@@ -132,11 +135,11 @@ class Cell {
   ControlPoints points_;
 };
 
-bool cells_apart(const Cell& a, const Cell& b, double margin, int depth) {
+bool cells_apart(const CurveCell& a, const CurveCell& b, double margin, int depth) {
   if (hulls_apart(a.points(), b.points(), margin)) return true;
   if (depth == 0 || (a.is_line() && b.is_line())) return false;
   const bool halve_a = !a.is_line() && (b.is_line() || a.size() >= b.size());
-  for (const Cell& half : (halve_a ? a : b).halves()) {
+  for (const CurveCell& half : (halve_a ? a : b).halves()) {
     if (!(halve_a ? cells_apart(half, b, margin, depth - 1)
                   : cells_apart(a, half, margin, depth - 1))) {
       return false;
@@ -145,7 +148,7 @@ bool cells_apart(const Cell& a, const Cell& b, double margin, int depth) {
   return true;
 }
 
-// Whether a line through the end of `a`, where `b` begins, has them on different sides.
+// Whether a line through the end of `a`, where `b` begins, separates the pieces.
 bool joint_separates(std::span<const Point2> a, std::span<const Point2> b) {
   const Point2& joint = b.front();
   const Point2 back = a.front() - joint;
@@ -162,24 +165,24 @@ bool joint_separates(std::span<const Point2> a, std::span<const Point2> b) {
   return true;
 }
 
-bool cells_apart_but_for_joint(const Cell& a, const Cell& b, int depth) {
+bool cells_meet_only_at_joint(const CurveCell& a, const CurveCell& b, int depth) {
   if (a.begin() == b.end() || a.begin() == a.end() || b.begin() == b.end()) return false;
   if (joint_separates(a.points(), b.points())) return true;
   if (depth == 0) return false;
   const auto [a_far, a_near] = a.halves();
   const auto [b_near, b_far] = b.halves();
   return cells_apart(a_far, b, 0.0, 8) && cells_apart(a_near, b_far, 0.0, 8) &&
-         cells_apart_but_for_joint(a_near, b_near, depth - 1);
+         cells_meet_only_at_joint(a_near, b_near, depth - 1);
 }
 
-// Directions that a cell's tangents lie between: those of its steps from control point to control
-// point, as it is monotone all within a quarter turn.
+// Cone of directions that holds all tangents of a monotone cell. It is spanned by the steps between
+// control points, which lie within a quarter turn.
 struct Cone {
   Point2 right;
   Point2 left;
 };
 
-bool cone_of(const Cell& cell, Cone* cone) {
+bool cone_of(const CurveCell& cell, Cone* cone) {
   const Point2 chord = cell.end() - cell.begin();
   cone->right = cone->left = chord;
   for (std::size_t i = 0; i + 1 < cell.points().size(); ++i) {
@@ -192,8 +195,9 @@ bool cone_of(const Cell& cell, Cone* cone) {
   return true;
 }
 
-// Whether no tangent of one cell is parallel to one of the other: then they meet once at the most.
-bool are_transversal(const Cell& a, const Cell& b) {
+// Whether no tangent of one cell is parallel to a tangent of the other; such cells intersect at
+// most once.
+bool are_transversal(const CurveCell& a, const CurveCell& b) {
   Cone first;
   Cone second;
   if (!cone_of(a, &first) || !cone_of(b, &second)) return false;
@@ -204,25 +208,25 @@ bool are_transversal(const Cell& a, const Cell& b) {
          *std::max_element(turns.begin(), turns.end()) < 0.0;
 }
 
-class MeetingFinder {
+class IntersectionFinder {
  public:
-  MeetingFinder(const CurvePiece& a, const CurvePiece& b, double precision,
-                std::vector<Meeting>* meetings)
-      : a_(a), b_(b), precision_(precision), meetings_(meetings) {}
+  IntersectionFinder(const CurvePiece& a, const CurvePiece& b, double precision,
+                     std::vector<CurveIntersection>* intersections)
+      : a_(a), b_(b), precision_(precision), intersections_(intersections) {}
 
   bool find() {
     if (a_.curve.degree() == 1 && b_.curve.degree() == 1 && append_corner()) return true;
     append_ends();
     if (run_together()) return true;
     if (a_.curve.degree() == 1 && b_.curve.degree() == 1) {
-      intersect_lines(Cell(a_), Cell(b_));
+      intersect_lines(CurveCell(a_), CurveCell(b_));
       return true;
     }
-    return search(Cell(a_), Cell(b_));
+    return search(CurveCell(a_), CurveCell(b_));
   }
 
  private:
-  // Lines from a common end into clearly different directions.
+  // Appends the common end of two lines that leave it in clearly different directions.
   bool append_corner() {
     for (const bool at_end_of_a : {false, true}) {
       for (const bool at_end_of_b : {false, true}) {
@@ -240,27 +244,27 @@ class MeetingFinder {
     return false;
   }
 
-  // Ends of one on the other; ends that are (almost) the same belong together.
+  // Appends ends of one piece that lie on the other; ends that almost coincide are paired.
   void append_ends() {
     for (const double s : {a_.from, a_.to}) {
       const Point2& end = s == a_.from ? a_.begin() : a_.end();
       const double t = parameter_near(b_, end, precision_);
-      if (t >= 0.0) meetings_->push_back({s, t, end});
+      if (t >= 0.0) intersections_->push_back({s, t, end});
     }
     for (const double t : {b_.from, b_.to}) {
       const Point2& end = t == b_.from ? b_.begin() : b_.end();
       const double s = parameter_near(a_, end, precision_);
-      if (s > a_.from && s < a_.to) meetings_->push_back({s, t, end});
+      if (s > a_.from && s < a_.to) intersections_->push_back({s, t, end});
     }
   }
 
-  // Two monotone pieces that run along each other somewhere do so from an end to an end.
+  // Two monotone pieces that overlap anywhere do so from one end to another.
   bool run_together() const {
-    const auto meetings = std::span(*meetings_).subspan(first_);
-    for (std::size_t i = 0; i + 1 < meetings.size(); ++i) {
-      for (std::size_t j = i + 1; j < meetings.size(); ++j) {
-        const Meeting& first = meetings[i];
-        const Meeting& second = meetings[j];
+    const auto intersections = std::span(*intersections_).subspan(first_);
+    for (std::size_t i = 0; i + 1 < intersections.size(); ++i) {
+      for (std::size_t j = i + 1; j < intersections.size(); ++j) {
+        const CurveIntersection& first = intersections[i];
+        const CurveIntersection& second = intersections[j];
         if (distance(first.point, second.point) <= 4.0 * precision_) continue;
         if (runs_along(a_, first.a, second.a, b_, 4.0 * precision_)) return true;
       }
@@ -268,10 +272,10 @@ class MeetingFinder {
     return false;
   }
 
-  void append(double s, double t, const Point2& point) { meetings_->push_back({s, t, point}); }
+  void append(double s, double t, const Point2& point) { intersections_->push_back({s, t, point}); }
 
-  bool search(const Cell& a, const Cell& b) {
-    if (++steps_ > kMostSteps) return false;
+  bool search(const CurveCell& a, const CurveCell& b) {
+    if (++steps_ > kMaxSearchSteps) return false;
     if (hulls_apart(a.points(), b.points(), 0.0)) return true;
     const double small = 0.25 * precision_;
     if (a.size() <= small || b.size() <= small) {
@@ -291,14 +295,14 @@ class MeetingFinder {
       return true;
     }
     const bool halve_a = !a.is_line() && (b.is_line() || a.size() >= b.size());
-    for (const Cell& half : (halve_a ? a : b).halves()) {
+    for (const CurveCell& half : (halve_a ? a : b).halves()) {
       if (!(halve_a ? search(half, b) : search(a, half))) return false;
     }
     return true;
   }
 
-  // One of the cells is as good as a point.
-  void append_small(const Cell& a, const Cell& b) {
+  // Handles cells of which one is smaller than the precision.
+  void append_small(const CurveCell& a, const CurveCell& b) {
     if (a.size() <= b.size()) {
       const double t = parameter_near(b_, a.begin(), precision_);
       if (t >= 0.0) append(a.from(), t, a.begin());
@@ -310,8 +314,8 @@ class MeetingFinder {
 
   enum class Outcome : std::uint8_t { kMeet, kMiss, kUnknown };
 
-  // Newton's iteration for the one point where two cells may meet.
-  Outcome converge(const Cell& a, const Cell& b) {
+  // Finds the one possible intersection of two cells by Newton's iteration.
+  Outcome converge(const CurveCell& a, const CurveCell& b) {
     double s = a.middle();
     double t = b.middle();
     for (int i = 0; i < 12; ++i) {
@@ -337,10 +341,11 @@ class MeetingFinder {
       if (distance(point_at(a_.curve, s), point_at(b_.curve, t)) > 0.25 * precision_) {
         return Outcome::kUnknown;
       }
-      // What is just beyond a cell's end is found from both sides, and once as an end of the whole.
-      constexpr double kSlack = 1e-12;
-      if (s < a.from() - kSlack || s > a.to() + kSlack || t < b.from() - kSlack ||
-          t > b.to() + kSlack) {
+      // The cell next to this one also finds intersections just beyond this cell's end; those at
+      // the ends of the whole pieces have been appended already.
+      constexpr double kCellSlack = 1e-12;
+      if (s < a.from() - kCellSlack || s > a.to() + kCellSlack || t < b.from() - kCellSlack ||
+          t > b.to() + kCellSlack) {
         return Outcome::kMiss;
       }
       append(s, t, point_at(a_.curve, s));
@@ -349,8 +354,8 @@ class MeetingFinder {
     return Outcome::kUnknown;
   }
 
-  // Cells that are as good as lines.
-  void intersect_lines(const Cell& a, const Cell& b) {
+  // Intersects cells that are straight within the precision.
+  void intersect_lines(const CurveCell& a, const CurveCell& b) {
     const Point2 along_a = a.end() - a.begin();
     const Point2 along_b = b.end() - b.begin();
     const double begin_of_b = cross(along_a, b.begin() - a.begin());
@@ -369,10 +374,10 @@ class MeetingFinder {
            (1.0 - s) * a.begin() + s * a.end());
   }
 
-  // Cells along each other: where the part that both have begins and ends. A cell may be so short
-  // that it is across the other one, where what is in its direction is nowhere near it.
-  void append_overlap(const Cell& a, const Cell& b) {
-    const auto share_of = [this](const Cell& cell, const Point2& point) {
+  // Appends the ends of the common part of two overlapping cells. A cell can be so short that it
+  // lies across the other; then a point whose projection is on the chord may still be far from it.
+  void append_overlap(const CurveCell& a, const CurveCell& b) {
+    const auto share_of = [this](const CurveCell& cell, const Point2& point) {
       const Point2 chord = cell.end() - cell.begin();
       const double share = dot(point - cell.begin(), chord) / dot(chord, chord);
       if (!(share >= 0.0 && share <= 1.0)) return -1.0;
@@ -396,8 +401,8 @@ class MeetingFinder {
   const CurvePiece& a_;
   const CurvePiece& b_;
   double precision_;
-  std::vector<Meeting>* meetings_;
-  std::size_t first_ = meetings_->size();
+  std::vector<CurveIntersection>* intersections_;
+  std::size_t first_ = intersections_->size();
   int steps_ = 0;
 };
 
@@ -409,19 +414,19 @@ bool are_apart(const CurvePiece& a, const CurvePiece& b, double precision) {
     return true;
   }
   if (a.curve.degree() == 1 && b.curve.degree() == 1) return false;
-  return cells_apart(Cell(a), Cell(b), precision, 12);
+  return cells_apart(CurveCell(a), CurveCell(b), precision, 12);
 }
 
-bool are_apart_but_for_joint(const CurvePiece& a, const CurvePiece& b) {
+bool meet_only_at_joint(const CurvePiece& a, const CurvePiece& b) {
   if (a.begin() == b.end()) return false;
   if (joint_separates(a.controls, b.controls)) return true;
   if (a.curve.degree() == 1 && b.curve.degree() == 1) return false;
-  return cells_apart_but_for_joint(Cell(a), Cell(b), 12);
+  return cells_meet_only_at_joint(CurveCell(a), CurveCell(b), 12);
 }
 
-bool append_meetings(const CurvePiece& a, const CurvePiece& b, double precision,
-                     std::vector<Meeting>* meetings) {
-  return MeetingFinder(a, b, precision, meetings).find();
+bool append_intersections(const CurvePiece& a, const CurvePiece& b, double precision,
+                          std::vector<CurveIntersection>* intersections) {
+  return IntersectionFinder(a, b, precision, intersections).find();
 }
 
 double parameter_near(const CurvePiece& piece, const Point2& point, double precision) {
@@ -439,8 +444,8 @@ double parameter_near(const CurvePiece& piece, const Point2& point, double preci
     const double t = (1.0 - share) * piece.from + share * piece.to;
     return distance(point_at(piece.curve, t), point) <= precision ? t : -1.0;
   }
-  // Where one coordinate is the point's, the other tells how near the piece comes: surely within
-  // the precision for the one of the two that changes faster there.
+  // Solving for one coordinate leaves the error in the other. The coordinate that changes faster
+  // gives an error within the precision.
   for (const auto axis : {&Point2::x, &Point2::y}) {
     const bool rises = chord.*axis > 0.0;
     double low = piece.from;
