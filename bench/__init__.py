@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What docs/benchmarks/ is made with: a folder a subject, and what they share beside them.
+"""Programs that measure the figures in docs/benchmarks/: a folder per subject, shared modules here.
 
-Programs are started by their paths, put the checkout on sys.path, and import from here. What they
-measure goes to results/ by `--json`, and pages.py makes the pages of it.
+Start a program by its path: it puts the checkout on sys.path and imports from here. With `--json`
+it writes its figures to results/, from which pages.py makes the pages.
 """

@@ -5,7 +5,7 @@
 A page has marks; the text up to the end mark follows from the results that they name:
 
     <!-- result: NAME TABLE -->     a table of bench/results/NAME.json
-    <!-- commands: NAME... -->      the commands that measure it, the date, and what it was run on
+    <!-- commands: NAME... -->      the commands that measure it, the date and the machine
     <!-- criteria: PAGE -->         the criteria of bench/results/verdicts.toml for a page
     <!-- verdicts -->               its verdicts, a table per subject
 
@@ -39,7 +39,7 @@ def pages() -> list[Path]:
 
 
 def rewritten(text: str) -> str:
-    """Returns a page with what follows from results as it ought to be."""
+    """Returns a page with current tables, commands and verdicts."""
 
     def made(found: re.Match[str]) -> str:
         kind, name = found[2], found[3] or ""
@@ -73,7 +73,7 @@ def _in_markdown(columns: list[str], rows: list[list[str]]) -> str:
 
 
 def commands(*names: str) -> str:
-    """Returns the commands of results, and where and when they were measured."""
+    """Returns the commands of results, with the machine and the date."""
     lines, notes = [], []
     for name in names:
         found = result(name)
@@ -86,7 +86,7 @@ def commands(*names: str) -> str:
 
 
 def criteria(page: str) -> str:
-    """Returns what is asked of a page's subject, and whether it holds."""
+    """Returns the criteria of a page's subject, and whether they hold."""
     lines = ["| Criterion | Found | |", "| :--- | :--- | :--- |"]
     for one in _verdicts()["criterion"]:
         if one["page"] == page:

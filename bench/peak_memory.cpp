@@ -27,7 +27,7 @@ double status_field(const std::string& name) {
 }  // namespace
 
 PeakMemory::PeakMemory() {
-  malloc_trim(0);  // what earlier work has freed must not be used again unseen
+  malloc_trim(0);  // reuse of memory freed earlier would go unmeasured
   std::ofstream("/proc/self/clear_refs") << "5";
   start_ = status_field("VmRSS:");
 }

@@ -10,7 +10,7 @@ class PeakMemory {
  public:
   PeakMemory();
 
-  /// The most that has been resident since, beyond what was resident at the start [MiB].
+  /// Peak resident memory since construction, beyond the resident memory at the start [MiB].
   double added() const;
 
  private:

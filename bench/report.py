@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-# What JSON takes for a number. Cells keep their digits: 0.970 stays 0.970.
+# A number in JSON. Cells keep their digits: 0.970 stays 0.970.
 _NUMBER = re.compile(r"-?(0|[1-9]\d*)(\.\d+)?")
 
 
@@ -103,7 +103,7 @@ def encoded(result: dict[str, object]) -> str:
 
 
 def decoded(text: str) -> dict:
-    """Returns a result; cells are texts, those of numbers with the digits of the file."""
+    """Returns a result; cells are texts, and numbers keep the digits of the file."""
     return json.loads(text, parse_float=str, parse_int=str)
 
 
@@ -132,7 +132,7 @@ def command() -> str:
 
 
 def machine() -> str:
-    """Returns what the figures were measured on."""
+    """Returns the machine and software that the figures were measured on."""
     names = re.findall(r"^model name\s*: (.*)$", _read("/proc/cpuinfo"), re.M)
     systems = re.findall(r'^PRETTY_NAME="(.*)"$', _read("/etc/os-release"), re.M)
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")

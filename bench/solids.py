@@ -26,12 +26,12 @@ class Solid:
 
     @property
     def corners(self) -> Floats:
-        """Those of each triangle, (triangles, 3, 3)."""
+        """The corners of each triangle, (triangles, 3, 3)."""
         return self.positions[self.triangles]
 
     @property
     def volume(self) -> float:
-        """What a closed surface holds."""
+        """The enclosed volume of a closed surface."""
         return mesh_volume(self.positions, self.triangles)
 
     def transformed(self, matrix: ArrayLike, offset: ArrayLike = (0.0, 0.0, 0.0)) -> "Solid":
@@ -39,15 +39,15 @@ class Solid:
         return Solid(self.positions @ np.asarray(matrix, float).T + offset, self.triangles)
 
     def flipped(self) -> "Solid":
-        """Inside out."""
+        """The solid turned inside out."""
         return Solid(self.positions, self.triangles[:, ::-1])
 
     def without(self, removed: ArrayLike) -> "Solid":
-        """Without some triangles."""
+        """The solid without some triangles."""
         return Solid(self.positions, np.delete(self.triangles, np.asarray(removed), axis=0))
 
     def fitted(self, low: ArrayLike, high: ArrayLike) -> "Solid":
-        """Scaled evenly and moved so that it has its middle where the box has it, and fits in."""
+        """The solid, scaled evenly and moved so that it fits centered into the box."""
         low, high = np.asarray(low, float), np.asarray(high, float)
         own_low, own_high = self.positions.min(axis=0), self.positions.max(axis=0)
         scale = np.min((high - low) / (own_high - own_low))

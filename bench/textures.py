@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Textures of real models, where they are there."""
+"""Textures of real models, if available."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Peers that are run in turns, so that what else the machine does falls on all of them alike."""
+"""Runs peers in turns, so that other load on the machine affects all of them alike."""
 
 import statistics
 import sys
@@ -13,7 +13,7 @@ from bench.report import Report
 def measure(
     work: Mapping[str, Peer], rounds: int, *, uncounted: int = 1
 ) -> dict[str, list[Measurement]]:
-    """Runs all of them in turn, `rounds` times, after those that are not counted."""
+    """Runs all peers in turn, `rounds` times, after warm-up runs."""
     results: dict[str, list[Measurement]] = {name: [] for name in work}
     for count in range(-uncounted, rounds):
         for name, peer in work.items():

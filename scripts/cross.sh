@@ -3,7 +3,7 @@
 # shellcheck shell=bash
 # Functions that build the package for systems other than this machine's. Source it after lib.sh.
 
-# Those of scripts/platforms.toml; each has a build folder build/cross/<platform>.
+# The platforms of scripts/platforms.toml; each has a build folder build/cross/<platform>.
 mapfile -t platforms < <(sed -n 's/^\[\(.*\)\]$/\1/p' "$source_dir/scripts/platforms.toml")
 read -ra official_tags < <(sed -n 's/^pythons = //p' "$source_dir/scripts/platforms.toml" | tr -d '[]",')
 zig_dir=$cache_dir/zig-$(sha256sum <"$source_dir/scripts/toolchain.txt" | cut -c 1-12)

@@ -24,8 +24,8 @@ import demo_scene
 
 SCANS = 10
 RAYS = 220  # Along each side of a range image.
-WIDTH = 2.9  # Of a range image, in units of the world.
-NOISE = 0.004  # Of a range: standard deviation, in units of the world.
+WIDTH = 2.9  # Width of a range image, in units of the world.
+NOISE = 0.004  # Standard deviation of a range, in units of the world.
 DEPTH = 7
 POINT_RADIUS = 0.006
 COLORS = [(0.85, 0.27, 0.14), (0.05, 0.35, 0.42), (0.90, 0.58, 0.12), (0.35, 0.20, 0.45)]

@@ -27,12 +27,12 @@ Array = NDArray[np.float32]
 
 IMAGE = "Paint"
 TEXTURE_SIZE = 1024
-MARGIN = 1.5  # Of paint around a chart, in texels.
+MARGIN = 1.5  # Paint around a chart, in texels.
 SHOWN_LEVELS = (3, 4, 5)
 SHEET_LEVELS = range(1, 8)
 FILTERS = {"box": "Box", "lanczos3": "Lanczos 3", "pam-bilinear": "PAM bilinear"}
 
-PANEL_WIDTH, PANEL_HEIGHT = 480, 400  # Of a render, in pixels.
+PANEL_WIDTH, PANEL_HEIGHT = 480, 400  # Pixels of a render.
 SAMPLES = 12
 CELL = 176  # Side of a level on the contact sheet, in pixels.
 GAP = 16
@@ -119,7 +119,7 @@ def read_model(obj: bpy.types.Object) -> Model:
 
 
 def paint(model: Model) -> Array:
-    """Paints a pattern that runs on from chart to chart; what no chart needs is magenta."""
+    """Paints a pattern that continues from chart to chart; texels outside charts are magenta."""
     uvs = model.uvs * TEXTURE_SIZE
     to_uv = np.concatenate([uvs, np.ones((len(uvs), 3, 1))], axis=2).transpose(0, 2, 1)
     solid = np.abs(np.linalg.det(to_uv)) > 1e-9

@@ -4,7 +4,7 @@
 # Functions shared by the programs in scripts/. Source it; it does nothing by itself but set paths.
 #
 # Environment variables, all optional:
-#   PREFILTER_CACHE           folder for what is downloaded or made outside of the checkout
+#   PREFILTER_CACHE           folder for downloads and for files made outside of the checkout
 #                             (default: ${XDG_CACHE_HOME:-$HOME/.cache}/prefilter)
 #   PREFILTER_BLENDER         the Blender to use; else `blender` on PATH if it is 4.2 or later; else the
 #                             one of a Debian root that is made in the cache folder
@@ -18,7 +18,7 @@ source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 build_dir=$source_dir/build
 cache_dir=${PREFILTER_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/prefilter}
 headers_dir=$cache_dir/python-headers
-# Libraries that are linked in, and where their sources are: NAME=FOLDER.
+# Source folders of linked libraries: NAME=FOLDER.
 linked_sources=()
 while IFS= read -r folder; do
   name=${folder%-*}
@@ -27,7 +27,7 @@ done < <(sed -n 's/^\["\(.*\)"\]$/\1/p' "$source_dir/scripts/sources.toml")
 unset folder name
 source_options=("${linked_sources[@]/#/PREFILTER_}")
 source_options=("${source_options[@]/=/_SOURCE=}")
-# Each list has its own: checkouts may differ.
+# Each list has its own folder, as checkouts may differ.
 wheels_dir=$cache_dir/wheels-$(cat "$source_dir"/scripts/bundled{,_modules}.txt | sha256sum | cut -c 1-12)
 log_dir=$cache_dir/logs
 
@@ -53,8 +53,8 @@ fail() { note "$*"; exit 1; }
 
 declare -A lock_fds=() lock_depths=()
 
-# lock FILE: waits until no other process holds it, and holds it until as many calls of `unlock FILE`, or the
-# shell's end.
+# lock FILE: waits until no other process holds it, and holds it until as many calls of `unlock FILE`, or until the
+# shell ends.
 lock() {
   local fd depth=${lock_depths[$1]:-0}
   lock_depths[$1]=$((depth + 1))
@@ -73,7 +73,7 @@ unlock() {
   ((depth > 1)) || exec {fd}>&-
 }
 
-# build_lock PRESET: prints the file that is locked by who changes that build folder, or needs it to stay as it is.
+# build_lock PRESET: prints the lock file of a build folder, for changing it or for keeping it unchanged.
 build_lock() { printf '%s\n' "$build_dir/.$1.lock"; }
 
 # use_suite SUITE: lets a root of that Debian release be the root; sets suite, root_dir and enter_root, the words
@@ -87,7 +87,7 @@ use_suite() {
 
 use_suite "${PREFILTER_SUITE:-trixie}"
 
-# progress LOG: keeps standard input in LOG and shows now and then where it is.
+# progress LOG: saves standard input in LOG, and shows its latest line now and then.
 progress() {
   local line='' began=$SECONDS shown=$SECONDS status
   : >"$1"
@@ -115,7 +115,7 @@ logged() {
   fail "failed: $1 ... (the whole log: $log)"
 }
 
-# missing_packages [--root ROOT] PACKAGE...: prints those that are not installed.
+# missing_packages [--root ROOT] PACKAGE...: prints the packages that are not installed.
 missing_packages() {
   local where=() package
   if [[ $1 == --root ]]; then
@@ -201,7 +201,7 @@ remove_root() {
   rm -rf --one-file-system "$folder"
 }
 
-# Sid's list of packages may be older than it allows itself to be, where a mirror is behind.
+# The list of packages of sid may have expired, if a mirror is behind.
 make_root() {
   local mirror
   mirror=$(debian_mirror)
@@ -220,7 +220,7 @@ make_root() {
   mv "$root_dir.new" "$root_dir"
 }
 
-# ensure_sources: fetches what scripts/sources.toml lists.
+# ensure_sources: fetches the sources in scripts/sources.toml.
 ensure_sources() {
   local source mirror
   for source in "${linked_sources[@]#*=}"; do
@@ -232,8 +232,8 @@ ensure_sources() {
   done
 }
 
-# fetch_maven FOLDER GROUP:NAME:VERSION:TYPE[:CLASSIFIER] SHA256: unpacks a jar of Maven Central's in a folder of the
-# cache, unless that is there. Maven knows where Central is, or which mirror stands for it.
+# fetch_maven FOLDER GROUP:NAME:VERSION:TYPE[:CLASSIFIER] SHA256: unpacks a jar from Maven Central into a folder of the
+# cache, unless it exists. Maven knows the address of Central, or of its mirror.
 fetch_maven() {
   local folder=$cache_dir/$1 new=$cache_dir/$1.new jars
   [[ ! -e $folder ]] || return 0
@@ -254,8 +254,8 @@ fetch_maven() {
   unlock "$cache_dir/.maven.lock"
 }
 
-# ensure_wheels: fetches what the package imports and the extension brings along, as its authors publish it: pure Python,
-# and in the folder modules what is compiled, for each platform and Python.
+# ensure_wheels: fetches the third-party wheels that the extension includes: wheels of pure Python, and in the folder
+# modules compiled wheels for each platform and Python.
 ensure_wheels() {
   [[ ! -e $wheels_dir ]] || return 0
   local platform python
@@ -272,7 +272,7 @@ ensure_wheels() {
   mv "$wheels_dir.new" "$wheels_dir"
 }
 
-# ensure_reader: fetches what reads compiled modules; sets reader_dir.
+# ensure_reader: fetches the reader of compiled modules; sets reader_dir.
 ensure_reader() {
   reader_dir=$cache_dir/packager-$(/usr/bin/python3 -V | cat - "$source_dir/scripts/packager.txt" | sha256sum | cut -c 1-12)
   [[ ! -e $reader_dir ]] || return 0
@@ -283,7 +283,7 @@ ensure_reader() {
   mv "$reader_dir.new" "$reader_dir"
 }
 
-# ensure_site_tools: installs what scripts/site.txt lists, from PyPI; sets site_tools.
+# ensure_site_tools: installs the packages in scripts/site.txt from PyPI; sets site_tools.
 ensure_site_tools() {
   local folder
   folder=$cache_dir/site-$(sha256sum <"$source_dir/scripts/site.txt" | cut -c 1-12)
@@ -299,8 +299,8 @@ ensure_site_tools() {
   site_tools=$folder/bin
 }
 
-# ensure_decoders TAG: installs what scripts/decoders.txt lists for a Python, such as cp313. Sets decoders; empty where
-# they cannot be had, and tests skip.
+# ensure_decoders TAG: installs the packages in scripts/decoders.txt for a Python such as cp313. Sets decoders, empty if
+# they are not available, and tests skip.
 ensure_decoders() {
   local folder log=$log_dir/decoders-$1.log
   folder=$cache_dir/decoders-$1-$(sha256sum <scripts/decoders.txt | cut -c 1-12)
@@ -341,7 +341,7 @@ ensure_root() {
   printf '%s\n' "${packages[@]}" >"$stamp"
 }
 
-# root_version PACKAGE: prints the version that the root has of it.
+# root_version PACKAGE: prints the version of a package in the root.
 root_version() {
   dpkg-query --admindir "$root_dir/var/lib/dpkg" -W -f '${Version}' "$1"
 }
@@ -361,14 +361,14 @@ ensure_root_headers() {
   cp -RLp "$python/." "$new/$blender_tag/"
   cp -RLp "$root_dir/usr/include/$arch/python3.$version" "$new/$blender_tag/$arch/"
   cp -RLp "$root_dir/usr/include/pybind11" "$new/pybind11-include/"
-  # A new Python wants a new pybind11; this one comes before that of all others.
+  # A new Python requires a new pybind11, which is found first.
   ln -s ../pybind11-include/pybind11 "$new/$blender_tag/pybind11"
   cp "$root_dir/.prefilter-packages" "$new/.stamp"
   rm -rf "$folder"
   mv "$new" "$folder"
 }
 
-# find_headers: sets python_headers to TAG=FOLDER;... and pybind11_include, as CMake wants them.
+# find_headers: sets python_headers to TAG=FOLDER;... and pybind11_include, in the form for CMake.
 find_headers() {
   local folder tag
   local -A found=()
@@ -393,18 +393,17 @@ find_headers() {
   [[ ! -e $folder ]] || pybind11_include=$folder
 }
 
-# use_ccache: what was compiled before, in any checkout, is taken from a cache beside the others; not where the caller
-# has chosen a launcher.
+# use_ccache: reuses earlier compilations of any checkout from a cache, unless the caller has chosen a launcher.
 use_ccache() {
   [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && type -P ccache >/dev/null || return 0
   export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
   export CCACHE_DIR=${CCACHE_DIR:-$cache_dir/ccache} CCACHE_MAXSIZE=${CCACHE_MAXSIZE:-2G}
-  # As headers are precompiled; paths are relative to the checkout.
+  # Required for precompiled headers; paths are relative to the checkout.
   export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
   export CCACHE_BASEDIR=$source_dir CCACHE_NOHASHDIR=1
 }
 
-# setup_host: installs or fetches what building needs, and sets blender_kind and, for a host's Blender, blender_file.
+# setup_host: installs or fetches the requirements of a build, and sets blender_kind and, for a host's Blender, blender_file.
 setup_host() {
   lock "$cache_dir/.lock"
   choose_blender
@@ -416,8 +415,8 @@ setup_host() {
   unlock "$cache_dir/.lock"
 }
 
-# setup: installs or makes all that is missing, and sets blender_kind, blender_tag, host_tag, python_tags (of all
-# Pythons that there are headers of), own_tags (of those that Blender and python3 are beside it), python_headers and
+# setup: installs or makes everything that is missing, and sets blender_kind, blender_tag, host_tag, python_tags (all
+# Pythons with headers), own_tags (the Pythons of Blender and of python3 beside it), python_headers and
 # pybind11_include.
 setup() {
   lock "$cache_dir/.lock"
@@ -447,7 +446,7 @@ configured() {
   done
 }
 
-# configure PRESET NAME=VALUE...: runs cmake where the build folder is not configured so. Beside the presets of
+# configure PRESET NAME=VALUE...: runs cmake unless the build folder is configured with these values. Beside the presets of
 # CMakePresets.json there is cross/<platform>, for each table of scripts/platforms.toml.
 configure() {
   local preset=$1 folder=$build_dir/$1 how=(--preset "$1")
@@ -480,12 +479,12 @@ compile() {
   unlock "$(build_lock "$preset")"
 }
 
-# native_files: sets files to all C++ sources that are formatted.
+# native_files: sets files to all C++ sources that the formatter covers.
 native_files() {
   mapfile -d '' files < <(find native examples bench tests/native \( -name '*.h' -o -name '*.cpp' \) -print0)
 }
 
-# ensure_tools: installs what scripts/tools.txt lists, from PyPI: Debian 12 has it too old or not at all. Sets tools.
+# ensure_tools: installs the tools in scripts/tools.txt from PyPI, as Debian 12 lacks them or has old ones. Sets tools.
 ensure_tools() {
   local folder=$cache_dir/tools log=$log_dir/tools.log
   lock "$cache_dir/.tools.lock"
@@ -530,7 +529,7 @@ exec_with_blender() {
     PYTHONPATH="$build_dir/release/python/$host_tag${PYTHONPATH:+:$PYTHONPATH}" "$@"
 }
 
-# package_with COMMAND ARGUMENT...: runs scripts/packager, which gets to know how Blender is started.
+# package_with COMMAND ARGUMENT...: runs scripts/packager with the command that starts Blender.
 package_with() {
   local blender=("$blender_file")
   [[ $blender_kind != root ]] || blender=("${enter_root[@]}" blender)

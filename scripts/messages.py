@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Brings the tables of translations up to date with what Blender shows of the add-on.
+"""Updates the translation tables with the texts that Blender shows of the add-on.
 
-A text that is new gets an entry that is still empty, and one that is no longer shown loses its own.
+A new text gets an empty entry, and a text that is no longer shown loses its entry.
 
 usage: scripts/run blender --background --python-exit-code 1 --python scripts/messages.py
 """
@@ -21,7 +21,7 @@ PACKAGE = "bl_ext.user_default.prefilter"
 ROOT = Path(__file__).resolve().parents[1]
 ADDON = ROOT / "addon"
 SHARED = ROOT / "native/python/prefilter/workflows"
-"""What the add-on does as the package's command does it."""
+"""Modules that the add-on shares with the package's command."""
 LABEL, TIP, TEXT, BUTTON = "label", "tip", "text", "button"
 _BASES = (
     *(bpy.types.Operator, bpy.types.Panel, bpy.types.Menu, bpy.types.PropertyGroup),
@@ -32,7 +32,7 @@ _WITHOUT_PROPERTIES = (bpy.types.Panel, bpy.types.Menu, bpy.types.FileHandler)
 _TRANSLATED = {"tr", "report", "marked", "Sentence"}
 _COUNTED = ("1 {}", "{{}} {}s")
 _SCALED = ("{{}} million {}s", "{{}} billion {}s")
-"""What wording.py says of numbers of things."""
+"""Patterns by which wording.py formats counts."""
 _DRAWING = {"draw": 2, "draw_main": 2, "note": 2, "subpanel": 2}
 """Functions that draw a text, and which argument it is."""
 _SAYING = {"poll_message_set", "report"}
@@ -46,7 +46,7 @@ _SAID = {"activity", "makes", "required_object", "nothing"}
 
 
 def shown() -> dict[str, list[str]]:
-    """Returns what Blender shows, by the text: what kind of text it is, and where."""
+    """Returns the kind and the place of each text that Blender shows."""
     found: dict[str, list[str]] = {}
     for kind, text, where in (*registered(), *presets(), *written()):
         if any(letter.isalpha() for letter in text):
@@ -55,7 +55,7 @@ def shown() -> dict[str, list[str]]:
 
 
 def registered() -> Iterator[tuple[str, str, str]]:
-    """Yields the kind, the text and the place of what classes and properties say."""
+    """Yields kind, text and place of the labels and tips of classes and properties."""
     for one in classes():
         if issubclass(one, _LABELED):
             yield LABEL, one.bl_label, one.__name__
@@ -87,7 +87,7 @@ def classes() -> Iterator[type]:
 
 
 def presets() -> Iterator[tuple[str, str, str]]:
-    """Yields what the menus of presets show of those that come with the add-on."""
+    """Yields the labels of the presets that come with the add-on."""
     for path in (ADDON / "presets").rglob("*.py"):
         yield (
             LABEL,
@@ -97,7 +97,7 @@ def presets() -> Iterator[tuple[str, str, str]]:
 
 
 def written() -> Iterator[tuple[str, str, str]]:
-    """Yields what the code of the add-on draws and says."""
+    """Yields the texts that the add-on's code draws and reports."""
     for node, place in nodes():
         for text in _texts(node):
             yield TEXT, text, place
@@ -106,7 +106,7 @@ def written() -> Iterator[tuple[str, str, str]]:
 
 
 def untranslated() -> Iterator[str]:
-    """Yields the places where code puts a sentence together, or says one, without `tr`."""
+    """Yields the places where code composes or shows a sentence without `tr`."""
     for node, place in nodes():
         if not isinstance(node, ast.Call):
             continue
@@ -120,7 +120,7 @@ def untranslated() -> Iterator[str]:
 
 
 def nodes() -> Iterator[tuple[ast.AST, str]]:
-    """Yields what the code of the add-on consists of, and where it stands."""
+    """Yields the syntax nodes of the add-on's code, with file and line."""
     for path in (*sorted(ADDON.rglob("*.py")), *sorted(SHARED.rglob("*.py"))):
         place = path.relative_to(ADDON if path.is_relative_to(ADDON) else SHARED.parent)
         if place.parts[0] == "presets":
@@ -184,7 +184,7 @@ def _own_properties(one: type, rna: bpy.types.Struct) -> Iterator[bpy.types.Prop
     """Yields the properties of a class that Blender shows."""
     inherited = {"name", *bpy.types.AddonPreferences.bl_rna.properties.keys()}
     for item in rna.properties:
-        # What is for the code alone has no name, and so its identifier as one.
+        # Properties for internal use have no name, so Blender gives them the identifier.
         if item.name != item.identifier and item.identifier not in inherited:
             yield item
 

@@ -5,7 +5,7 @@
 
 # The versions, and the Python of each.
 declare -A official_pythons=([4.2]=cp311 [4.5]=cp311 [5.2]=cp313)
-# Libraries that such a module needs even without a window. Roots with a Blender have them.
+# Libraries that such a module needs even without a window; roots with a Blender include them.
 official_packages=(libgl1 libice6 libsm6 libx11-6 libxfixes3 libxi6 libxkbcommon0 libxrender1 libxxf86vm1)
 
 # ensure_official_group GROUP TAG: installs a group of scripts/official.txt for a Python; prints its folder.
@@ -18,7 +18,7 @@ ensure_official_group() {
     note "fetching Blender as a module of Python, or what its tests import, from PyPI ($1)"
     mkdir -p "$log_dir"
     rm -rf "$folder.new"
-    # The Python that pip runs in is another one, so what wheels say that they require is no matter.
+    # pip runs in another Python, so the requirements of wheels are ignored.
     if ! /usr/bin/python3 -m pip install --disable-pip-version-check --no-cache-dir --no-compile --no-deps \
       --ignore-requires-python --require-hashes --only-binary :all: --python-version "3.${2#cp3}" \
       --target "$folder.new" --requirement <(printf '%s\n' "$requirements") >"$log" 2>&1; then

@@ -33,7 +33,7 @@ COMMON = (
 
 
 def rewritten(text: str) -> tuple[str, int]:
-    """Returns a page with its tables as they ought to be, and how many there are."""
+    """Returns a page with current tables, and their number."""
     return TABLE.subn(lambda found: f"{found[1]}{table(found[2])}\n{found[3]}", text)
 
 

@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[1]
 LIST = ROOT / "tests" / "faults.toml"
 CHECKOUT = ROOT / "build" / "faults" / "checkout"
 LONGEST = 300.0
-"""Seconds that the tests of a fault may take: what goes on for ever is seen, too."""
+"""Seconds that the tests of a fault may take: an endless loop counts as detected, too."""
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,8 @@ class Fault:
 
     Attributes:
         file: Relative to the checkout.
-        old: A part of one line that is once in the file.
-        new: What stands there instead.
+        old: A part of one line that occurs once in the file.
+        new: Its replacement.
         native: The filter of the C++ tests; empty for none.
         python: Arguments of pytest, for tests of the package; empty for none.
         blender: The same for tests inside Blender, of the add-on; empty for none.
@@ -47,7 +47,7 @@ class Fault:
 
     @property
     def tests(self) -> str:
-        """Those that are to see it, whatever runs them."""
+        """The tests that must detect it, in any of the three runners."""
         return self.native or self.python or self.blender
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Print what CHANGELOG.md says of a release.
+"""Print the section of CHANGELOG.md about a release.
 
 usage: release_notes.py TAG
 
@@ -46,7 +46,7 @@ def notes(tag: str, source: Path = SOURCE) -> str:
 
 
 def main() -> int:
-    """Does what the command line says."""
+    """Runs the command line."""
     try:
         (tag,) = sys.argv[1:]
         sys.stdout.write(notes(tag))

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from packager.project import SOURCE, description
 
-# What is needed of this checkout, beside README.md and pyproject.toml, which are changed a little.
+# Files taken from this checkout, besides README.md and pyproject.toml, which are adapted.
 FILES = (
     "CHANGELOG.md",
     "CMakeLists.txt",
@@ -60,7 +60,7 @@ def lay_out(folder: Path, pybind11: Path, linked: Sequence[Path], source: Path =
 
 
 def main() -> int:
-    """Does what the command line says."""
+    """Runs the command line."""
     folder, pybind11, *linked = map(Path, sys.argv[1:])
     lay_out(folder, pybind11, linked)
     return 0

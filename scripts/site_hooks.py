@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What mkdocs.yml asks for: the navigation of the site, from docs/README.md, and job templates."""
+"""Hooks of mkdocs.yml: the site's navigation, from docs/README.md, and the job templates."""
 
 import sys
 from pathlib import Path

@@ -57,7 +57,7 @@ def certificates() -> ssl.SSLContext:
 
 
 def fetch(url: str, accept: str = "*/*") -> bytes:
-    """Returns what is at a URL."""
+    """Returns the content at a URL."""
     headers = {"Accept": accept, "User-Agent": "prefilter"}
     request = urllib.request.Request(url, headers=headers)
     try:
@@ -153,7 +153,7 @@ def license_text(source: Mapping[str, Any], unpacked: Path) -> str:
 
 
 def keep(source: Mapping[str, Any], unpacked: Path, target: Path) -> None:
-    """Moves what is kept of an archive that has been unpacked to `target`."""
+    """Moves the parts of an unpacked archive that the table keeps to `target`."""
     text = license_text(source, unpacked)
     for folder, patterns in source["kept"].items():
         (target / folder).mkdir(parents=True, exist_ok=True)
@@ -169,7 +169,7 @@ def keep(source: Mapping[str, Any], unpacked: Path, target: Path) -> None:
 
 
 def has_all(source: Mapping[str, Any], target: Path) -> bool:
-    """Returns whether a folder has what the table keeps; an earlier table may have kept less."""
+    """Returns whether a folder has all that the table keeps; an earlier table may keep less."""
     return target.exists() and all(
         any(target.joinpath(folder).glob(pattern.rpartition("/")[2]))
         for folder, patterns in source["kept"].items()
@@ -199,7 +199,7 @@ def ensure(name: str, source: Mapping[str, Any], cache: Path, mirror: str) -> No
 
 
 def main() -> int:
-    """Does what the command line says."""
+    """Runs the command line."""
     if len(sys.argv) != 3:
         print("usage: sources.py CACHE MIRROR", file=sys.stderr)
         return 2

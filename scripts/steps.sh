@@ -7,7 +7,7 @@
 #   PREFILTER_TEST_ONLY       if set, only the steps whose names match this regular expression are declared
 
 readonly skipped=77
-results=$(mktemp -d) # The files of steps that run, and what a step leaves for those after it.
+results=$(mktemp -d) # The files of running steps, and the data that a step leaves for later ones.
 trap 'rm -rf "$results"' EXIT
 functions=()
 declare -A names=() needs=()
@@ -31,7 +31,7 @@ skip() {
 run_step() {
   local status began=$SECONDS
   printf '\n=== %s\n' "${names[$1]}"
-  # Bash ignores errexit in whatever is followed by || or stands in an if.
+  # Bash ignores errexit in commands before || and in an if.
   set +e
   (
     set -e
@@ -69,7 +69,7 @@ conclude() {
   summary+=("$(printf '%-8s %4d s %5d s  %s' "$result" "$seconds" "$processors" "${names[$1]}")")
 }
 
-# is_ready FUNCTION: whether nothing that it needs is still to end.
+# is_ready FUNCTION: whether all steps that it needs have ended.
 is_ready() {
   local need
   for need in ${needs[$1]}; do

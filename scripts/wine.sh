@@ -6,8 +6,8 @@
 wine_dir=$cache_dir/wine
 wine_program=(env "WINEPREFIX=$wine_dir" WINEDEBUG=-all "WINEDLLOVERRIDES=mscoree,mshtml=" /usr/lib/wine/wine64)
 
-# start_wine [ARGUMENT...]: starts what all programs under Wine share, and which ends a while after them. It gets none of
-# this shell's files: locks would be held by it, and pipes would not end.
+# start_wine [ARGUMENT...]: starts the server that all programs under Wine share, and which ends a while after them. It
+# inherits none of this shell's files: it would hold locks, and pipes would not end.
 start_wine() (
   local fd
   for fd in "${lock_fds[@]}"; do
@@ -16,7 +16,7 @@ start_wine() (
   "${wine_program[@]}" wineboot "$@" </dev/null
 )
 
-# ensure_wine: installs Wine, and makes the folder that stands for a Windows.
+# ensure_wine: installs Wine, and makes its folder of a Windows.
 ensure_wine() {
   lock "$cache_dir/.wine.lock"
   ensure_packages wine64
@@ -69,7 +69,7 @@ ensure_wine_python() {
       --no-deps --require-hashes --only-binary :all: --platform win_amd64 --python-version "3.${1#cp3}" \
       --target "$new/site-packages" --requirement <(printf '%s\n' "$requirements")
     cp -a "$cache_dir/python-windows-3.${1#cp3}"/org/bytedeco/cpython/windows-x86_64 "$new/python"
-    # Wine does not answer what it asks the system.
+    # Wine does not support its queries of the system.
     rm -f "$new/python/lib/_wmi.pyd"
     make_python3_dll "$new/python" "$1"
     mv "$new" "$wine_python"
@@ -77,7 +77,7 @@ ensure_wine_python() {
   unlock "$cache_dir/.wine.lock"
 }
 
-# windows_path PATH...: prints paths as programs for Windows want them, as a list with ;.
+# windows_path PATH...: prints paths in the form for Windows, separated by ;.
 windows_path() {
   local path paths=()
   for path in "$@"; do
@@ -89,7 +89,7 @@ windows_path() {
   )
 }
 
-# python_under_wine TAG PACKAGES ARGUMENT...: runs that Python under Wine, with what the folder PACKAGES has importable.
+# python_under_wine TAG PACKAGES ARGUMENT...: runs that Python under Wine, with the folder PACKAGES importable.
 python_under_wine() {
   local path
   ensure_wine

@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs what ships over ordinary files, and judges the results by checks that know no method."""
+"""Runs the shipped entry points over ordinary files; the checks of the results know no method."""

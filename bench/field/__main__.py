@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs every entry point that ships, at its defaults, over files, and lists what is wrong.
+"""Runs every shipped entry point at its defaults over files, and lists the faults it finds.
 
 Usage: scripts/run python3 -m bench.field [FOLDER...] [--generated N] (--help lists options)
 
@@ -66,7 +66,7 @@ def _arguments() -> argparse.Namespace:
     )
     parser.add_argument("folders", type=Path, nargs="*", metavar="FOLDER", help="files to run over")
     parser.add_argument("--generated", type=int, default=0, metavar="N", help="make N files, too")
-    parser.add_argument("--seed", type=int, default=0, help="of what is made (default: 0)")
+    parser.add_argument("--seed", type=int, default=0, help="of the made files (default: 0)")
     parser.add_argument("--only", default="*", metavar="PATTERN", help="of names of files")
     parser.add_argument("--entry", default="*", metavar="PATTERN", help="of entry points")
     parser.add_argument("--skip", default="", metavar="PATTERN", help="entry points to leave out")
@@ -74,7 +74,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--seconds", type=float, default=MAX_SECONDS, help="that a run may take")
     parser.add_argument("--allow", nargs="*", default=[], metavar="CLASS", help="of findings")
     parser.add_argument(
-        "--kept", type=Path, nargs="*", metavar="FOLDER", help="run nothing; report what was kept"
+        "--kept", type=Path, nargs="*", metavar="FOLDER", help="run nothing; report kept results"
     )
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="keep results and findings")
     parser.add_argument("--sheet", type=Path, metavar="FILE.png", help="draw all results")

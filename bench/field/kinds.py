@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which kind of input a file is."""
+"""Kinds of input files."""
 
 from pathlib import Path
 
@@ -16,7 +16,7 @@ _HEADER_BYTES = 65536
 
 
 def kind_of(path: Path) -> str | None:
-    """Returns the kind of a file; None for a file that nothing of Prefilter reads."""
+    """Returns the kind of a file; None for a file that Prefilter does not read."""
     extension = path.suffix.lower()
     for kind, extensions in _BY_EXTENSION.items():
         if extension in extensions:

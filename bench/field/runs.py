@@ -27,9 +27,9 @@ class EntryPoint:
     """A command or an operator at its defaults.
 
     Attributes:
-        name: What it is called in tables.
-        kinds: Which kinds of files it takes.
-        extension: That of the result.
+        name: Its name in tables.
+        kinds: The kinds of files that it takes.
+        extension: The result's file name extension.
         arguments: Makes the command line of the paths of input and result.
         needs_blender: Whether it runs in Blender.
     """
@@ -67,7 +67,7 @@ def _operator(name: str) -> Callable[[Path, Path], list[str]]:
 ENTRY_POINTS = (
     EntryPoint("voxelize", (MESH, MODEL), ".ply", _command("voxelize")),
     EntryPoint("reconstruct", (CLOUD,), ".ply", _command("reconstruct")),
-    # A command that asks for a size has no default of it.
+    # Commands that require a size have no default for it.
     EntryPoint("resize", (PICTURE,), ".png", _command("resize", "--percent", "50")),
     EntryPoint(
         "mipmaps",
@@ -95,17 +95,17 @@ ENTRY_POINTS = (
 
 @dataclass
 class Run:
-    """What an entry point did with a file.
+    """The outcome of running an entry point on a file.
 
     Attributes:
         entry_point: The entry point's name.
         source: The input.
         target: Where the result should be.
         status: The exit status; negative for a signal, None after a time limit.
-        seconds: Of processors.
-        mebibytes: The most memory that it held.
+        seconds: Processor time.
+        mebibytes: Peak memory.
         output: Standard output and standard error.
-        findings: What the checks found wrong.
+        findings: The faults that the checks found.
     """
 
     entry_point: str
@@ -119,7 +119,7 @@ class Run:
 
     @property
     def has_result(self) -> bool:
-        """Whether there is a result to look at."""
+        """Whether a result exists."""
         return self.status == 0 and self.target.exists()
 
 
@@ -174,5 +174,5 @@ def _wait(
 
 
 def available(entry_point: EntryPoint) -> bool:
-    """Tells whether the program of an entry point is there."""
+    """Tells whether the program of an entry point is installed."""
     return not entry_point.needs_blender or shutil.which("blender") is not None

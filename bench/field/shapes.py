@@ -32,15 +32,15 @@ class Shape:
         return Shape(truth["kind"], tuple(truth["center"]), tuple(truth["sizes"]))
 
     def written(self) -> dict[str, Any]:
-        """Returns what `of` reads."""
+        """Returns the data that `of` reads."""
         return {"kind": self.kind, "center": list(self.center), "sizes": list(self.sizes)}
 
     def distances(self, points: Floats) -> Floats:
-        """Returns how far points are from the surface."""
+        """Returns the distances of points from the surface."""
         return np.abs(self._signed(points))
 
     def outward(self, points: Floats) -> Floats:
-        """Returns the directions in which a scanner is: out of solids, and into rooms."""
+        """Returns the directions toward the scanner: out of solids, and into rooms."""
         step = 1e-4 * max(self.sizes)
         axes = step * np.eye(3)
         slopes = [self._signed(points + axis) - self._signed(points - axis) for axis in axes]

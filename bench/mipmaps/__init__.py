@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Textures and the levels that are made of them."""
+"""Textures and their levels."""

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Makes a mip-mapped TIFF of a picture file: what a program around the library does.
+// Makes a mip-mapped TIFF of a picture file, as a program built around the library would.
 //
 // usage: prefilter_bake_file PICTURE MESH TARGET FILTER THREADS, with an 8-bit RGBA or RGB PNG as
 // the picture, and mesh.bin of scene.py as the mesh.
@@ -77,7 +77,7 @@ class TiffFile {
 
   // Adds a level of RGBA bytes, row 0 at the bottom.
   void add(const std::uint8_t* data, int width, int height) {
-    // As maketx has it.
+    // The tile size of maketx.
     constexpr int kTile = 64;
     TIFF* tiff = file_.get();
     if (levels_++ > 0) TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, FILETYPE_REDUCEDIMAGE);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Makes a mip-mapped TIFF of a picture file with prefilter: what a tool around the package does.
+"""Makes a mip-mapped TIFF of a picture file with prefilter, as a tool around the package would.
 
 usage: bake_file.py PICTURE MESH TARGET FILTER THREADS, MESH as scene.py writes it.
 """

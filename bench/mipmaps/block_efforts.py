@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures what the efforts of block compression give and take, beside Intel's encoder of BC7.
+"""Measures the gain and the cost of the efforts of block compression, beside Intel's BC7 encoder.
 
 Usage: python3 bench/mipmaps/block_efforts.py IMAGE...
 
 The package, OpenImageIO (2.5 or later) and PyPI's package ispc-texcomp must be importable. Images
-are read as bytes, and their alpha is left out. Level 0 is the middle, 512 x 512 texels; coarse
-levels are those of a box over the whole image. The ratio of peak to noise is that of red, green and
-blue, or of the channels that the format has. Times are those of level 0 on one thread, in processor
-time, the least of three in turns.
+are read as bytes without their alpha. Level 0 is the middle, 512 x 512 texels; coarse levels are
+box-filtered from the whole image. The peak signal-to-noise ratio is over red, green and blue, or
+over the channels of the format. Times are for level 0 on one thread: processor time, the least of
+three interleaved rounds.
 """
 
 import argparse
@@ -35,11 +35,11 @@ CHANNELS = {"bc4": 1, "bc5": 2}
 PROFILES = ("ultrafast", "fast", "slow")
 
 Coded = tuple[float, Pixels]
-"""The processor time, and what is read of what was written."""
+"""Processor time, and the pixels read back from the file."""
 
 
 def by_package(texture_format: str, effort: str) -> Callable[[Pixels], Coded]:
-    """Through a file of the package."""
+    """Returns an encoder that writes and reads back a file of the package."""
 
     def through(image: Pixels) -> Coded:
         file = io.BytesIO()
@@ -54,7 +54,7 @@ def by_package(texture_format: str, effort: str) -> Callable[[Pixels], Coded]:
 
 
 def by_intel(profile: str, folder: Path) -> Callable[[Pixels], Coded]:
-    """Through the peer, which needs sides divisible by four."""
+    """Returns an encoder by the peer, which needs sides divisible by four."""
     compress = intel("bc7", profile)
 
     def through(image: Pixels) -> Coded:
@@ -73,7 +73,7 @@ def decibels(found: Pixels, image: Pixels, channels: int) -> float:
 
 
 def coarse_levels(image: Pixels) -> list[Pixels]:
-    """Those of COARSE, of an image whose sides are powers of two."""
+    """Returns the levels in COARSE of an image whose sides are powers of two."""
     levels = prefilter.mipmaps(image, filter="box")
     return [level for level in levels if level.shape[0] in COARSE]
 
@@ -89,7 +89,7 @@ def measure(image: Pixels, folder: Path) -> list[list[str]]:
     found: dict[tuple[str, str], Pixels] = {}
     for number in range(ROUNDS):
         for key, through in encoders.items():
-            # What takes long is not to be measured more often.
+            # Slow encoders run once.
             if number == 0 or least[key] < 1.0:
                 seconds, found[key] = through(middle)
                 least[key] = min(least[key], seconds)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures what block compression adds to the error of levels, on a model with one texture.
+"""Measures the error that block compression adds to levels, on a model with one texture.
 
 Usage: python3 bench/mipmaps/block_formats.py MODEL.obj TEXTURE    (with the package importable)
 
-The files are those of prefilter.write_dds, read by OpenImageIO (2.5 or later). Errors are in
+prefilter.write_dds writes the files, and OpenImageIO (2.5 or later) reads them. Errors are in
 scene-linear values over the surface, by prefilter.mipmap_error; and in steps of 8 bits over the
 texels of level 0.
 """

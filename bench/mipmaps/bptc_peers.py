@@ -5,11 +5,11 @@
 Usage: python3 bench/mipmaps/bptc_peers.py IMAGE...
 
 The package, OpenImageIO (2.5 or later) and PyPI's package ispc-texcomp must be importable. Images
-of bytes are compressed to BC7, without their alpha, and to BC1; images of floats to BC6H. Of larger
-images it is the middle, 512 x 512. OpenImageIO decodes all. Errors: of BC7 the ratio of peak to
-noise over red, green and blue; of BC6H the root mean square of the logarithm to the base 2 of found
-by wanted, both plus a thousandth, and the share of channels that are wrong by more than a quarter.
-Times are those of one thread, the least of five in turns.
+of bytes are compressed to BC7, without their alpha, and to BC1; images of floats to BC6H. Only the
+middle 512 x 512 of a larger image is used. OpenImageIO decodes everything. Errors: for BC7 the peak
+signal-to-noise ratio over red, green and blue; for BC6H the root mean square of log2 (found /
+wanted), both plus a thousandth, and the share of channels that are wrong by more than a quarter.
+Times are on one thread, the least of five interleaved rounds.
 """
 
 import argparse
@@ -72,7 +72,7 @@ def intel(texture_format: str, profile: str) -> Callable[[Pixels], bytes]:
 
 
 def decoded(blocks: bytes, texture_format: str, shape: tuple[int, ...], folder: Path) -> Pixels:
-    """What OpenImageIO reads, the top row first."""
+    """Returns the pixels that OpenImageIO reads, the top row first."""
     height, width = shape[:2]
     code = TEXEL_FORMATS[texture_format].dxgi[0]
     header = b"DDS " + struct.pack("<7I44x", 124, 0x81007, height, width, len(blocks), 0, 1)
@@ -86,7 +86,7 @@ def decoded(blocks: bytes, texture_format: str, shape: tuple[int, ...], folder: 
 
 
 def errors(found: Pixels, image: Pixels) -> tuple[float, ...]:
-    """Of bytes the ratio in decibels; of floats the two errors."""
+    """The ratio in decibels for images of bytes; the two errors for images of floats."""
     if image.dtype == np.uint8:
         return (float(10 * np.log10(255**2 / np.mean((found.astype(float) - image) ** 2))),)
     ratio = np.log2((found + DARKEST) / (image + DARKEST))

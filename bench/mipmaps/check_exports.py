@@ -77,7 +77,7 @@ def main() -> int:
 
 
 def read_by_node(modules: Path, paths: list[Path]) -> dict[str, Any]:
-    """What bench/mipmaps/gltf_readers.mjs says of files: `versions`, and `found`, one a file."""
+    """The report of gltf_readers.mjs on files: `versions`, and `found` with an entry per file."""
     run = subprocess.run(
         ["node", str(READERS), str(modules), *map(str, paths)], capture_output=True, text=True
     )
@@ -105,7 +105,7 @@ def ktx2_files(path: Path) -> Iterator[bytes]:
 
 
 def validated(ktx: str, data: bytes) -> list[str]:
-    """What `ktx validate` has against a file, as glTF demands it; a warning counts."""
+    """Returns the errors and warnings of `ktx validate` on a file, with glTF's requirements."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "texture.ktx2"
         path.write_bytes(data)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares bakes of a large image, and of many in tiles, with those of another checkout.
+"""Compares bakes of a large image, and of many in tiles, with the bakes of another checkout.
 
 Usage: python3 bench/mipmaps/compare_large.py FOLDER --before CHECKOUT [--cache] [--rounds N]
 
@@ -64,7 +64,7 @@ def main() -> None:
 
 
 def blender(checkout: Path, suite: str, *arguments: str) -> str:
-    """Runs large_scene.py in Blender with the extension of a checkout; returns what it prints."""
+    """Runs large_scene.py in Blender with the extension of a checkout; returns its output."""
     program = [str(checkout / "scripts/run"), "blender", "--background", "--python", str(SCENE)]
     return subprocess.run(
         [*program, "--", *arguments],
@@ -77,7 +77,7 @@ def blender(checkout: Path, suite: str, *arguments: str) -> str:
 
 
 def clocked(printed: str) -> Measurement:
-    """Returns what was measured; raises OSError where the bake failed."""
+    """Returns the measurements; raises OSError if the bake failed."""
     for line in printed.splitlines():
         if line.startswith(MARK):
             return Measurement(**json.loads(line.removeprefix(MARK)))

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures what Cycles renders from PAM in its texture cache, against the cache that Blender makes.
+"""Measures Cycles's renders with PAM in its texture cache, against the cache that Blender makes.
 
 Usage: blender --background --python-exit-code 1 --python bench/mipmaps/cycles.py -- [MODEL...]
        (--help lists the options; Blender 5.2 or later is needed)
 
 Each model gets an emission shader with its base color, and is rendered from four sides by an
 orthographic camera with a box pixel filter: without the cache (the reference), with Blender's, and
-with that of `prefilter.bake_texture_cache`. The figure is the RMSE against the reference, in
+with the one of `prefilter.bake_texture_cache`. The figure is the RMSE against the reference, in
 scene-linear values, over the pixels that the model covers fully in it. Ends with status 1 if a
 criterion of docs/benchmarks/renders.md does not hold.
 """

@@ -29,12 +29,12 @@ class Case:
     """An export.
 
     Attributes:
-        role: What the images are to the material, a key of `ROLES`.
-        size: Of the images, in texels.
-        texture_format: Of the KTX 2 files.
-        supercompression: Of the same.
-        fallback: What stands beside them.
-        kind: The exporter's own name of the kind of file.
+        role: The images' role in the material, a key of `ROLES`.
+        size: The images' size in texels.
+        texture_format: The format of the KTX 2 files.
+        supercompression: The supercompression of the KTX 2 files.
+        fallback: The images exported beside the KTX 2 files.
+        kind: The exporter's own name for the file type.
         draco: Whether meshes are compressed.
     """
 
@@ -56,7 +56,7 @@ class Case:
 
 
 def cases() -> list[Case]:
-    """Returns forty of them."""
+    """Returns forty cases."""
     found = []
     for number, (role, size) in enumerate((role, size) for role in ROLES for size in SIZES):
         found.append(
@@ -174,7 +174,7 @@ def composed(material: Any, size: tuple[int, int], _: Path) -> None:
 
 
 def emission(material: Any, size: tuple[int, int], _: Path) -> None:
-    """What glows."""
+    """A material with an emission image."""
     shader = principled(material)
     name = "Emission Color" if "Emission Color" in shader.inputs else "Emission"
     shader.inputs["Emission Strength"].default_value = 1.0
@@ -182,7 +182,7 @@ def emission(material: Any, size: tuple[int, int], _: Path) -> None:
 
 
 def cutout(material: Any, size: tuple[int, int], _: Path) -> None:
-    """A base color whose alpha is tested."""
+    """A base color with an alpha test."""
     tree = material.node_tree
     found = node(material, image("Leaf", size, alpha=True))
     link(material, found.outputs[0], "Base Color")

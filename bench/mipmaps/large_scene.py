@@ -7,7 +7,7 @@ Usage: blender --background --python bench/mipmaps/large_scene.py -- WORK FOLDER
 WORK is `make-picture SIZE`: FOLDER/picture.blend, a torus with an image of SIZE x SIZE bytes;
 `make-ship`: FOLDER/ship.blend, many small objects with images in tiles; `bake`, which makes
 FOLDER/picture.exr of the first; or `bake-cache`, which bakes the second into the texture cache.
-Both print what they took.
+Both bakes print their time and memory.
 """
 
 import math
@@ -32,7 +32,7 @@ SUBDIVIDED = 3  # One object in so many has a subdivision modifier.
 
 
 def main(work: str, *arguments: str) -> None:
-    """Does what is asked for."""
+    """Runs the requested work."""
     if work == "make-picture":
         make_picture(int(arguments[0]), Path(arguments[1]))
     elif work == "make-ship":
@@ -104,7 +104,7 @@ def bake_cache(folder: Path) -> None:
 
 
 def picture(size: int, channels: int, *, seed: int) -> NDArray[np.uint8]:
-    """Returns a picture whose details of each size are as strong as those of a photograph."""
+    """Returns a picture with the spectrum of a photograph."""
     random = np.random.default_rng(seed)
     pixels = np.full((size, size, channels), 110, np.float32)
     cells = 4

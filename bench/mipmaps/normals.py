@@ -5,9 +5,9 @@
 Usage: blender --background --python-exit-code 1 --python bench/mipmaps/normals.py -- [MODEL...]
        (--data FOLDER names the folder of the models)
 
-The models have no normal maps, so each gets one from its picture: brightness for height. Compared
-are the normals of lookups, of length 1 as shaders make them, at random points of the surface. Ends
-with status 1 if a level of "pam-bilinear" is farther off than that of "box".
+The models have no normal maps, so each gets one from its picture: brightness for height. The
+normals of lookups, normalized as in shaders, are compared at random points of the surface. Ends
+with status 1 if a level of "pam-bilinear" is farther off than the same level of "box".
 """
 
 import argparse

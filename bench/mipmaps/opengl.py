@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures what OpenGL shows of the levels of each filter: error and flicker of turning models.
+"""Measures the error and flicker of turning models in OpenGL, by the filter of their levels.
 
 Usage: PYTHONPATH=PACKAGE python3 bench/mipmaps/opengl.py [MODEL...] [--filters FILTER...]
        (--help lists the options; bench/mipmaps/opengl_models.py has to be run before, in Blender)
@@ -9,7 +9,7 @@ A model wears its base color, unlit, and turns through 12 frames of 0.4 degrees.
 looks up the full image (level 0, bilinear) at 16 x 16 points of each pixel. Against it are lookups
 of the levels: one a pixel, 4 x 4 samples a pixel, and one with 16x anisotropy. The error is the
 RMSE over the pixels that the model covers fully and the channels, in scene-linear values; flicker
-is the root mean square of the difference of consecutive frames less that of the reference.
+is the root mean square of the difference of consecutive frames minus the reference's difference.
 
 A filter is NAME, or NAME:KEY=VALUE:..., with arguments of `prefilter.mipmaps`, and with
 views=LOOKUPS if `prefilter.fit_to_views` goes on from there; or "exact": the mean of the full image
@@ -48,13 +48,13 @@ SIZES = (200, 64)
 FRAMES = 12
 STEP = np.radians(0.4)
 REFERENCE = 16  # Samples along each side of a pixel.
-PIECES = 8  # The same, to find pixels with more than one piece of the model.
+PIECES = 8  # Samples along a side, to find pixels with several pieces of the model.
 EXACT = "exact"
 
 
 @dataclass(frozen=True)
 class Mode:
-    """A way to look levels up."""
+    """A kind of lookup of levels."""
 
     about: str
     samples: int = 1  # Along each side of a pixel.
@@ -80,7 +80,7 @@ MODES = {
 
 @dataclass(frozen=True)
 class Truth:
-    """What ought to be shown.
+    """The reference pictures.
 
     Attributes:
         colors: (views, frames, size, size, 3).
@@ -96,7 +96,7 @@ class Truth:
         return float(np.sqrt(np.mean(differences.astype(float) ** 2)))
 
     def flicker(self, shown: Texels, mask: str) -> float:
-        """Returns the RMS of what changes from frame to frame, but not in the truth."""
+        """Returns the RMS of changes from frame to frame that the truth does not have."""
         both = self.masks[mask][:, 1:] & self.masks[mask][:, :-1]
         changes = np.diff(shown - self.colors, axis=1)[both]
         return float(np.sqrt(np.mean(changes.astype(float) ** 2)))
@@ -110,7 +110,7 @@ MASKS = {
 
 @dataclass(frozen=True)
 class Found:
-    """What was measured, by the key "MASK SIZE MODE"."""
+    """Measurements by the key "MASK SIZE MODE"."""
 
     error: dict[str, float]
     flicker: dict[str, float]
@@ -144,9 +144,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--masks", nargs="+", default=tuple(MASKS), choices=MASKS, metavar="MASK")
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, metavar="PIXELS")
     parser.add_argument("--views", type=int, default=2, help="starts of the turn")
-    parser.add_argument(
-        "--fresh", action="store_true", help="measure again what this build has measured before"
-    )
+    parser.add_argument("--fresh", action="store_true", help="repeat measurements of this build")
     parser.add_argument(
         "--folder",
         type=Path,
@@ -164,7 +162,7 @@ def parse() -> argparse.Namespace:
 
 
 def settings(options: argparse.Namespace) -> str:
-    """Returns what results depend on besides model and filter: the build, and what is drawn."""
+    """Returns everything but model and filter that results depend on: the build and the drawing."""
     hashed = hashlib.sha256(Path(prefilter._native.__file__).read_bytes())
     for module in (prefilter.images.mipmaps, prefilter.images.views, opengl_renderer):
         hashed.update(inspect.getsource(module).encode())
@@ -173,7 +171,7 @@ def settings(options: argparse.Namespace) -> str:
 
 
 class Results:
-    """What was found of a model, in a file."""
+    """The results for a model, in a file."""
 
     def __init__(self, path: Path, settings_: str) -> None:
         """Reads the file, if there is one."""
@@ -191,7 +189,7 @@ class Results:
 
 
 def angles(views: int) -> list[list[float]]:
-    """Returns those of the frames, by view."""
+    """Returns the angles of the frames, by view."""
     starts = [0.35 + 2 * np.pi * view / views for view in range(views)]
     return [[start + frame * STEP for frame in range(FRAMES)] for start in starts]
 
@@ -239,7 +237,7 @@ def measure(
     truth: dict[int, Truth],
     options: argparse.Namespace,
 ) -> Found:
-    """Returns what a filter gives."""
+    """Returns the results of a filter."""
     began = time.monotonic()
     if filter_ == EXACT:
         textures = renderer.textures([[image] for image in model.images])

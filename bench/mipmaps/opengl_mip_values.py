@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures which mip values OpenGL's lookups have on turning models, with and without anisotropy.
+"""Measures the mip values of OpenGL's lookups on turning models, with and without anisotropy.
 
 Usage: PYTHONPATH=PACKAGE python3 bench/mipmaps/opengl_mip_values.py [MODEL...]
        (--help lists the options; bench/mipmaps/opengl_models.py has to be run before, in Blender)
@@ -114,7 +114,7 @@ def add_fractions(report: Report, way: str, models: list[str], found: list[Float
 
 
 def add_levels(report: Report, way: str, values: Floats) -> None:
-    """Adds the same by interval of mip values."""
+    """Adds a histogram of the fractions by interval of mip values."""
     rows = []
     for level in range(int(max(0, values.max())) + 1):
         s = values[(values > level) & (values <= level + 1)] - level

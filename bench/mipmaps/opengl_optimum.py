@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Finds how near levels can come to what one trilinear lookup a pixel should show.
+"""Finds the least error that levels can have with one trilinear lookup per pixel.
 
 Usage: PYTHONPATH=PACKAGE python3 bench/mipmaps/opengl_optimum.py [MODEL] [--frames N]
        (--help lists the options; bench/mipmaps/opengl_models.py has to be run before, in Blender)
@@ -42,13 +42,13 @@ PLACES = "vec4(uv, textureQueryLod(levels, uv).y, 1.0)"
 
 @dataclass(frozen=True)
 class Equations:
-    """matrix @ texels = values, of which each row is a pixel."""
+    """The equations matrix @ texels = values, a row per pixel."""
 
     matrix: Matrix
     values: Floats
 
     def rms(self, texels: Floats) -> float:
-        """Returns by how much they are missed."""
+        """Returns the residual of the equations."""
         return float(np.sqrt(np.mean((self.matrix @ texels - self.values) ** 2)))
 
     def normal(self) -> tuple[Matrix, Floats]:
@@ -92,7 +92,7 @@ def main() -> None:
 def equations(
     renderer: Renderer, model: Model, levels: list[Texels], count: int
 ) -> tuple[Equations, Equations]:
-    """Returns those of the frames, and of what changes to the frames after them."""
+    """Returns the equations of the frames, and of the changes to the frames after them."""
     random = np.random.default_rng(5)
     textures = renderer.textures([levels])
     still, moving = [], []
@@ -111,7 +111,7 @@ def equations(
 def seen(
     renderer: Renderer, textures: list, angle: float, size: int
 ) -> tuple[Texels, Texels, NDArray[np.bool_]]:
-    """Returns where pixels look, what they should show, and which have one piece of the model."""
+    """Returns pixel positions, their true colors, and which see a single piece of the model."""
     pieces = renderer.draw(textures, angle, opengl.PIECES * size, result=opengl_renderer.PLACE)
     full = {"filters": opengl_renderer.FULL, "result": opengl_renderer.exact(opengl.REFERENCE)}
     places = renderer.draw(textures, angle, size, result=PLACES)
@@ -150,7 +150,7 @@ def of_pixels(
 
 
 def joined(parts: list[Equations]) -> Equations:
-    """Returns all of them."""
+    """Returns all equations as one system."""
     matrix = scipy.sparse.vstack([part.matrix for part in parts]).tocsr()
     return Equations(matrix, np.concatenate([part.values for part in parts]))
 

@@ -59,7 +59,7 @@ FOOTPRINT = """vec4(0.0);
   float p = 0.5 * (dot(a, a) + dot(b, b));
   float q = length(vec2(0.5 * (dot(a, a) - dot(b, b)), dot(a, b)));
   result = vec4(textureQueryLod(levels, uv).y, p + q, max(p - q, 0.0), 1.0)"""
-# As EXT_texture_filter_anisotropic describes it, by lookups of which each is trilinear.
+# Follows EXT_texture_filter_anisotropic, with trilinear lookups.
 PROBES = """vec4(0.0);
   vec2 size = vec2(textureSize(levels, 0));
   vec2 dx = dFdx(uv), dy = dFdy(uv);
@@ -78,7 +78,7 @@ PROBES = """vec4(0.0);
 def exact(side: int) -> str:
     """Returns GLSL of the mean over a pixel's footprint, by side x side lookups of level 0.
 
-    It is what the best of all levels could show; but for what the texture has beyond a chart.
+    It bounds the quality of any levels, except for texels beyond a chart.
     """
     return f"""vec4(0.0);
   vec2 dx = dFdx(uv), dy = dFdy(uv);
@@ -224,7 +224,7 @@ class Renderer:
                 textures[image].filter = filters
                 textures[image].anisotropy = anisotropy
                 textures[image].use(0)
-            # What a shader does not use it does not have.
+            # The program does not list attributes that its shader does not use.
             attributes = {"position": 3, "uv_of_corner": 2, "chart_of_corner": 1}
             names = [name for name in attributes if name in program]
             layout = " ".join(

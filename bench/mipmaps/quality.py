@@ -5,8 +5,8 @@
 Usage: blender --background --python-exit-code 1 --python bench/mipmaps/quality.py -- [MODEL...]
        (--help lists the options)
 
-Models are imported by Blender's own importers, and read through the add-on's bridge, so that what
-is measured is what a user gets: the extension has to be installed and enabled. Ends with status 1
+Models are imported by Blender's own importers and read through the add-on's bridge, so the figures
+are a user's results: the extension has to be installed and enabled. Ends with status 1
 if a criterion of docs/benchmarks/mipmaps.md does not hold.
 
 The error is the RMSE over the surface and the channels, in scene-linear values, between bilinear
@@ -40,12 +40,12 @@ GAIN = 0.12
 PAINTED_MODEL = "spot"
 PAINTED_GAIN = 0.25
 AGREEMENT = 5.0  # Standard errors by which the two methods may differ.
-CHANCE = 3.0  # Those of a difference by which an equal filter may seem better at random points.
+CHANCE = 3.0  # Standard errors by which an equal filter may seem better at random points.
 
 
 @dataclass
 class Errors:
-    """What was found of one subject, by one of the methods.
+    """The errors on one subject, by one of the methods.
 
     Attributes:
         levels: Of each filter, the errors at the whole levels 1 to 6.
@@ -59,7 +59,7 @@ class Errors:
 
 @dataclass
 class Sampled(Errors):
-    """The same by lookups at random points.
+    """The errors on one subject, by lookups at random points.
 
     Attributes:
         deviations: The standard errors of `levels`.
@@ -78,7 +78,7 @@ class Summary:
     """Rows of the tables over all subjects.
 
     Attributes:
-        sources: What the gain comes from, by model.
+        sources: The causes of the gain, by model.
         gains: The errors of pam-bilinear as shares of the lowest of all rivals, by level.
         trilinear: The errors over all mip values.
         means: The mean share of lanczos3 of each model, as it was gathered.
@@ -402,7 +402,7 @@ def spread(summary: Summary, name: str) -> list[str]:
 
 
 def standard_error(samples: Floats) -> float:
-    """Returns that of the mean of samples."""
+    """Returns the standard error of the mean of samples."""
     return float(samples.std() / np.sqrt(len(samples)))
 
 

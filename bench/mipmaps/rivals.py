@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What PAM is measured against: other filters, on the image as it is and on one without background.
+"""Filters that PAM is measured against, on the original image and on one without background.
 
 Names say the filter, then how it is sharpened, then whether the image was dilated first: its
 texels that no triangle touches are filled from those that one does, by push-pull. The image is
-scene-linear and the levels are clipped to the bounds, whoever made them.
+scene-linear and the levels are clipped to the bounds, whatever the filter.
 """
 
 from dataclasses import dataclass
@@ -40,11 +40,11 @@ OWN = (
     "pam-box",
 )
 TEXTURE_SPACE = (*MAKETX, KAISER, LEAST_SQUARES)
-"""Those that get the dilated image, too."""
+"""The filters that also get the dilated image."""
 
 KAISER_WIDTH = 3.0
 KAISER_ALPHA = 4.0
-_KAISER_SAMPLES = 32  # In each texel over which the kernel is averaged.
+_KAISER_SAMPLES = 32  # Samples per texel over which the kernel is averaged.
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def is_least_squares(name: str) -> bool:
 def kaiser_levels(image: Texels, wrap: str) -> list[Texels]:
     """Returns the levels of a sinc under a Kaiser window, each made from the one before.
 
-    As the NVIDIA Texture Tools make them: three texels of the new level to either side, alpha 4,
+    The NVIDIA Texture Tools do it this way: three texels of the new level to either side, alpha 4,
     and the kernel averaged over the texels of the level before.
 
     Raises:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Lookups with numpy at random points of a surface: shares nothing with the library."""
+"""Lookups with numpy at random points of a surface, independent of the library."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ SAME_UV = 1e-6  # Modifiers round coordinates of the faces beside an edge differ
 
 
 class Taps:
-    """Which texels bilinear lookups read at some points, and how much of each, as a GPU does it."""
+    """The texels that bilinear lookups read at some points, and their weights, as on a GPU."""
 
     def __init__(self, points: Floats, shape: tuple[int, ...], wrap: str) -> None:
         """Takes texture coordinates (n, 2), and the shape (height, width, ...) of the image."""
@@ -50,7 +50,7 @@ class Taps:
         return shares
 
     def normal_equations(self, values: Floats) -> tuple[Floats, Floats]:
-        """Returns those of the texels whose lookups are nearest to values (n, channels)."""
+        """Returns the equations of the texels whose lookups are nearest to values (n, channels)."""
         taps = list(zip(self._texels, self._weights, strict=True))
         matrix = np.zeros((self._count, self._count))
         right = np.zeros((self._count, values.shape[1]))

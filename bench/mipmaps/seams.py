@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures what a seam budget does to UV seams and to the error, over gathered models.
+"""Measures the effect of a seam budget on UV seams and on the error, over gathered models.
 
 Usage: blender --background --python-exit-code 1 --python bench/mipmaps/seams.py -- [MODEL...]
        (--help lists the options)
@@ -31,7 +31,7 @@ FURTHER_BUDGETS = (0.003, 0.03)
 # Seams across which the image steps by less than that share of its standard deviation are hidden.
 HIDDEN = 0.1
 AGREEMENT = 0.01
-# Of the best trade.
+# Limits of the search for the best trade.
 MOST_UNKNOWNS = 1024
 POINTS = 1 << 16
 MOST_SWEEPS = 500
@@ -68,7 +68,7 @@ def main() -> None:
 def measure(
     report: Report, summary: list[list[str]], subject: Subject, options: argparse.Namespace
 ) -> None:
-    """Adds what was found of one subject to the report and the summary."""
+    """Adds the measurements of one subject to the report and the summary."""
     lines = sampling.seam_lines(subject.corners, subject.uvs, subject.parts)
     if not len(lines.lengths):
         (found,) = prefilter.seam_contrast([subject.image], subject.surfaces, wrap=subject.wrap)
@@ -185,7 +185,7 @@ def add_best_trades(
 ) -> None:
     """Adds the least contrast that the budget can buy, at levels of few texels.
 
-    Of all levels within the bounds, those that minimize error^2 + multiplier contrast^2 have the
+    Among all levels within the bounds, the minimizers of error^2 + multiplier contrast^2 have the
     lowest contrast for their error. So the multiplier that spends the budget gives the best trade.
     """
     points = sampling.random_points(subject.corners, subject.uvs, POINTS)

@@ -41,12 +41,12 @@ class Subject:
     """An image on its surfaces.
 
     Attributes:
-        name: What to call it.
+        name: Its name in tables.
         picture: The image as the add-on reads it.
         image: Its scene-linear values, row 0 at the bottom; where alpha is coverage, colors are
             multiplied by it.
-        surfaces: What the add-on gives the library.
-        wrap: The wrap mode that the materials ask for, or that of --wrap.
+        surfaces: The surfaces that the add-on passes to the library.
+        wrap: The wrap mode of the materials, or the one given by --wrap.
         corners: (m, 3, 3) positions and `uvs` (m, 3, 2) of the same triangles, read without the
             add-on and the library.
         uvs: See `corners`.
@@ -82,7 +82,7 @@ class Subject:
 
 
 def argument_parser(program: str, description: str) -> argparse.ArgumentParser:
-    """Returns a parser of what all programs over these models are told."""
+    """Returns a parser with the options that all programs over these models share."""
     parser = argparse.ArgumentParser(prog=program, description=description.splitlines()[0])
     parser.add_argument("models", nargs="*", default=MODELS)
     parser.add_argument(

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures what block formats leave of images, how fast they are written, and what zstd saves.
+"""Measures the error of block formats, the time of encoding, and the saving by zstd.
 
 Usage: python3 bench/mipmaps/texture_formats.py [--astcenc PROGRAM] IMAGE...
 
-The package, OpenImageIO and what scripts/decoders.txt lists must be importable; the decoders are
-those of others. Images are read as bytes, and their alpha is left out; BC3, ETC2 RGBA and the
-others that hold alpha get an opaque one. Of larger images it is the middle, 1024 x 1024. Of ETC1S
-the whole file counts. Error is that of level 0, over red, green and blue. Times are of one thread,
-in processor time, best of three in turns, without zstd.
+The package, OpenImageIO and the modules in scripts/decoders.txt must be importable; the decoders
+are third-party. Images are read as bytes without their alpha; BC3, ETC2 RGBA and the other formats
+with alpha get an opaque one. Only the middle 1024 x 1024 of a larger image is used. For ETC1S the
+whole file counts. The error is measured at level 0, over red, green and blue. Times are on one
+thread, in processor time, best of three interleaved rounds, without zstd.
 
 A peer: Arm's program (Debian's package astcenc), at the same effort, `-medium`.
 """
@@ -71,12 +71,12 @@ def level_zero(path: Path) -> bytes:
 
 
 def texels(decoded: bytes, width: int, height: int) -> Bytes:
-    """Of a decoder, which gives blue first."""
+    """Returns the texels from the BGRA output of a decoder."""
     return np.frombuffer(decoded, np.uint8).reshape(height, width, 4)[..., [2, 1, 0]]
 
 
 def signal_to_noise(found: Bytes, image: Bytes, channels: int) -> float:
-    """In decibels, of the peak."""
+    """The peak signal-to-noise ratio, in decibels."""
     difference = found[..., :channels].astype(float) - image[..., :channels]
     return float(10 * np.log10(255**2 / np.mean(difference**2)))
 
@@ -95,7 +95,7 @@ def packed_size(image: Bytes, texture_format: str, folder: Path) -> int:
 
 
 def encoding_of(texture_format: str) -> str:
-    """Of images of colors, where the format has it."""
+    """Returns the encoding of color images, if the format has it."""
     return "linear" if TEXEL_FORMATS[texture_format].vulkan[1] is None else "srgb"
 
 
@@ -123,7 +123,7 @@ def measured(image: Bytes, texture_format: str, folder: Path) -> tuple[float, fl
 
 
 def peer(program: str, image: Bytes, side: int, folder: Path) -> tuple[float, float, int]:
-    """The same of Arm's program."""
+    """Measures Arm's program: decibels; processor time; bytes of level 0."""
     height, width, _ = image.shape
     source, target = folder / "image.png", folder / "image.astc"
     output = oiio.ImageOutput.create(str(source))

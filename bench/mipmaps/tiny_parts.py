@@ -30,7 +30,7 @@ PALETTE = ((0.45, 0.47, 0.5), (0.75, 0.75, 0.72), (0.3, 0.05, 0.03), (0.12, 0.14
 
 @dataclass(frozen=True)
 class Face:
-    """A quadrilateral (4, 3), its sides in texels, and the color it is made of."""
+    """A quadrilateral (4, 3), its sides in texels, and its color."""
 
     corners: Floats
     width: int
@@ -94,7 +94,7 @@ def boxes(random: np.random.Generator) -> list[tuple[Floats, Floats, tuple[float
 
 
 def faces_of(center: Floats, sides: Floats, color: tuple[float, float, float]) -> list[Face]:
-    """Returns the faces of a box but for the bottom one, seen from outside."""
+    """Returns the faces of a box without its bottom, seen from outside."""
     faces = []
     for axis, sign in ((0, -1), (0, 1), (1, -1), (1, 1), (2, 1)):
         along, up = ((1, 2), (0, 2), (0, 1))[axis]

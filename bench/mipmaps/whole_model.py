@@ -4,10 +4,10 @@
 
 Usage: python3 bench/mipmaps/whole_model.py MODEL NAME=FOLDER...  (--help lists the options)
 
-A FOLDER is what BLENDER_USER_RESOURCES says of a version: `scripts/run blender` of a checkout
-installs its own in build/blender. Blender must be on PATH. Times are those of the whole command,
-Blender's start and the reading of the model among them, over all threads; "nothing" is what
-`--list` takes without a fit or a file.
+A FOLDER is the BLENDER_USER_RESOURCES of an installed version: `scripts/run blender` of a checkout
+installs its own in build/blender. Blender must be on PATH. Times are for the whole command over all
+threads, with Blender's start and the reading of the model; "nothing" is the time of `--list`, which
+neither fits nor writes a file.
 """
 
 import argparse
@@ -26,7 +26,7 @@ class Command:
     """A bake of a model by an installed version."""
 
     def __init__(self, name: str, folder: Path, model: Path, flags: list[str]) -> None:
-        """Takes the version, and what it is to bake."""
+        """Stores the version and its task."""
         self.name = name
         self._environment = {"BLENDER_USER_RESOURCES": str(folder)}
         self._line = ["blender", "--background", "--command", "prefilter", "bake", str(model)]

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the benchmarks run, each behind one interface: our own work, and the same by others.
+"""The programs that the benchmarks run, each behind one interface: ours and others'.
 
 One file a peer; to add one, write a class with the members of `Peer`. Nothing here imports numpy or
-holds pixels: a program inherits the peak memory of what started it, so that has to stay small.
+holds pixels: a program inherits the peak memory of its parent process, which therefore
+has to stay small.
 """
 
 import os
@@ -20,9 +21,9 @@ class Measurement:
 
     Attributes:
         seconds: Wall time.
-        peak_mib: The most memory that was resident [MiB], of the whole process.
-        start_mib: What was resident already when the clock was started.
-        cpu_seconds: CPU time of all threads, where it was looked at.
+        peak_mib: Peak resident memory of the whole process [MiB].
+        start_mib: Resident memory when the clock was started.
+        cpu_seconds: CPU time of all threads, where it was measured.
     """
 
     seconds: float
@@ -46,7 +47,7 @@ class Peer(Protocol):
 
 
 def run(command: Sequence[str]) -> tuple[float, float, str]:
-    """Runs a program; returns its wall time [s], its peak memory [MiB] and what it printed."""
+    """Runs a program; returns its wall time [s], its peak memory [MiB] and its output."""
     found, printed = run_measured(command)
     return found.seconds, found.peak_mib, printed
 
@@ -54,7 +55,7 @@ def run(command: Sequence[str]) -> tuple[float, float, str]:
 def run_measured(
     command: Sequence[str], environment: Mapping[str, str] | None = None
 ) -> tuple[Measurement, str]:
-    """Runs a program, with these variables besides ours; returns what it took and printed.
+    """Runs a program with these variables besides ours; returns its measurement and output.
 
     Raises:
         OSError: The program is missing or failed.

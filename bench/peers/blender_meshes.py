@@ -27,8 +27,8 @@ class Job:
         sources: Files of positions and triangles; the boolean has two.
         target: The file that gets positions, triangles, and seconds; none where it failed.
         modifier: One of `REMESH_MODES`, or UNION, INTERSECT or DIFFERENCE.
-        depth: Of the octree of SHARP and SMOOTH.
-        scale: The largest side of the mesh in that of their octree.
+        depth: The depth of the octree of SHARP and SMOOTH.
+        scale: The largest side of the mesh, as a share of their octree's side.
         cell: The voxel size of VOXEL.
     """
 
@@ -41,7 +41,7 @@ class Job:
 
 
 def missing() -> str:
-    """Returns what is needed and is not there; nothing where all is."""
+    """Returns the missing requirement; empty if there is none."""
     return "" if shutil.which("blender") else "blender on PATH"
 
 

@@ -82,7 +82,7 @@ LIBRARIES: dict[str, Callable[[], Resize]] = {
 
 
 def found() -> dict[str, Resize]:
-    """Returns the libraries that there are."""
+    """Returns the available libraries."""
     made = {}
     for name, make in LIBRARIES.items():
         try:

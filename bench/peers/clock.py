@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""One piece of work in a new process: CPU time, wall time and memory of it alone.
+"""CPU time, wall time and memory of one piece of work alone, in a new process.
 
 `clocked` is for the process that works, `run_clocked` for the one that started it. Neither holds
 pixels or meshes: see this package's docstring.
@@ -19,7 +19,7 @@ MARK = "CLOCKED "
 
 
 def clocked(work: Callable[[], Any]) -> Any:
-    """Does the work and prints what it took; returns what the work did.
+    """Does the work and prints its time and memory; returns the work's result.
 
     CPU time is of all threads of the process.
     """
@@ -39,7 +39,7 @@ def clocked(work: Callable[[], Any]) -> Any:
 
 
 def cpu_seconds() -> float:
-    """Returns what the process has used so far, in user and in system mode."""
+    """Returns the processor time used so far, in user and in system mode."""
     usage = resource.getrusage(resource.RUSAGE_SELF)
     return usage.ru_utime + usage.ru_stime
 
@@ -51,7 +51,7 @@ def status(field: str) -> float:
 
 
 def pinned(command: Sequence[str], threads: int) -> list[str]:
-    """Returns the command, bound to as many processors: what keeps TBB to as many threads."""
+    """Returns the command, bound to as many processors, which limits TBB to as many threads."""
     processors = sorted(os.sched_getaffinity(0))[:threads]
     return ["taskset", "--cpu-list", ",".join(map(str, processors)), *command]
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Prefilter from a picture file to a mip-mapped file, all in the clock."""
+"""Prefilter from a picture file to a mip-mapped file, all of it timed."""
 
 import sys
 from pathlib import Path
@@ -20,7 +20,7 @@ class FileToFile:
     ) -> None:
         """Reads `picture` and the mesh of `folder`, and writes into it.
 
-        `python` asks for the program around the Python package; else it is that around the C++
+        With `python` it is the program around the Python package, else the one around the C++
         library.
         """
         self.name = f"prefilter {filter}" + (", Python" if python else "")

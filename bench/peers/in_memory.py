@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Image in memory to levels in memory: only that is in the clock, in a new Python each time.
+"""Image in memory to levels in memory, timed alone, in a new Python each time.
 
 Run as a program, it does the work once and prints what `clock` does.
 usage: in_memory.py prefilter|openimageio FOLDER FILTER THREADS

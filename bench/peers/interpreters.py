@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Pythons that have what ours has not."""
+"""Python interpreters with modules that ours lacks."""
 
 import functools
 import os

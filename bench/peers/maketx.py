@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""OpenImageIO's maketx: a picture file to a mip-mapped file, all in the clock."""
+"""OpenImageIO's maketx: a picture file to a mip-mapped file, all of it timed."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from . import Measurement, run
 
 
 class Maketx:
-    """The program as a user runs it, with its defaults but for the filter and the threads."""
+    """The program as a user runs it, with its defaults except the filter and the threads."""
 
     def __init__(
         self, picture: Path, folder: Path, *, filter: str, threads: int, sharpen: float = 0.0

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""MeshLab's screened Poisson: a file of points to a file of triangles, but for the imports.
+"""MeshLab's screened Poisson: a file of points to a file of triangles, imports not counted.
 
 Run as a program, it does the work once and prints what `clock` does.
 usage: meshlab_poisson.py POINTS.ply TARGET.ply DEPTH
@@ -15,7 +15,7 @@ VARIABLE = "PREFILTER_MESHLAB_PYTHON"
 
 
 class MeshLab:
-    """The filter of pymeshlab with its defaults but for the depth and one thread."""
+    """The filter of pymeshlab with its defaults except the depth and one thread."""
 
     name = "pymeshlab"
 
@@ -26,7 +26,7 @@ class MeshLab:
 
     @staticmethod
     def missing() -> str:
-        """Returns what is needed and is not there; nothing where all is."""
+        """Returns the missing requirement; empty if there is none."""
         if can_import(VARIABLE, "pymeshlab"):
             return ""
         return f"pymeshlab of PyPI; {VARIABLE} names another Python that has it"

@@ -25,7 +25,7 @@ class Octree:
         interpolant: str = "",
         threads: int = 1,
     ) -> None:
-        """`mesh` holds positions and triangles; `low` and `side` are those of the root."""
+        """`mesh` holds positions and triangles; `low` and `side` place the root."""
         self.name = f"prefilter voxelize{' + contour ' + interpolant if interpolant else ''}"
         numbers = [*map(repr, map(float, (*low, side))), str(depth), str(threads)]
         command = [sys.executable, __file__, str(mesh), *numbers]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Open3D's screened Poisson: a file of points to a file of triangles, but for the imports.
+"""Open3D's screened Poisson: a file of points to a file of triangles, imports not counted.
 
 Run as a program, it does the work once and prints what `clock` does.
 usage: open3d_poisson.py POINTS.ply TARGET.ply DEPTH
@@ -15,7 +15,7 @@ VARIABLE = "PREFILTER_OPEN3D_PYTHON"
 
 
 class Open3d:
-    """`create_from_point_cloud_poisson` with its defaults but for the depth and one thread."""
+    """`create_from_point_cloud_poisson` with its defaults except the depth and one thread."""
 
     name = "Open3D"
 
@@ -26,7 +26,7 @@ class Open3d:
 
     @staticmethod
     def missing() -> str:
-        """Returns what is needed and is not there; nothing where all is."""
+        """Returns the missing requirement; empty if there is none."""
         if can_import(VARIABLE, "open3d"):
             return ""
         return f"Open3D, python3-open3d in Debian; {VARIABLE} names another Python that has it"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Normals of points by our own function and by Open3D's: only that is in the clock.
+"""Normals of points by our own function and by Open3D's, timed alone.
 
 Run as a program, it does the work once and prints what `clock` does.
 usage: point_normals.py prefilter|open3d POINTS.npy NORMALS.npy NEIGHBORS
@@ -26,7 +26,7 @@ class PointNormals:
 
     @staticmethod
     def missing() -> str:
-        """Returns what Open3D needs and is not there; nothing where all is."""
+        """Returns Open3D's missing requirement; empty if there is none."""
         if can_import(VARIABLE, "open3d"):
             return ""
         return f"Open3D, python3-open3d in Debian; {VARIABLE} names another Python that has it"
@@ -43,7 +43,7 @@ def _prefilter(points: Any, neighbors: int) -> Callable[[], Any]:
 
 
 def _open3d(points: Any, neighbors: int) -> Callable[[], Any]:
-    """With as many neighbors for the orientation as for the planes."""
+    """Open3D's normals, oriented with as many neighbors as the planes use."""
     import numpy as np
     import open3d
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""PoissonRecon by Kazhdan: a file of points to a file of triangles, all in the clock."""
+"""PoissonRecon by Kazhdan: a file of points to a file of triangles, all of it timed."""
 
 import dataclasses
 import os
@@ -17,7 +17,7 @@ IDLE_SLEEPS = {"OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive", "GOMP_SPINC
 
 
 class PoissonRecon:
-    """The program with its defaults but for the depth and one thread."""
+    """The program with its defaults except the depth and one thread."""
 
     name = "PoissonRecon"
 
@@ -29,8 +29,8 @@ class PoissonRecon:
         Args:
             points: The file of points.
             target: The file of triangles.
-            depth: Of the octree.
-            trimmed: Cut off, by SurfaceTrimmer, what is sampled by so many levels more coarsely
+            depth: The depth of the octree.
+            trimmed: SurfaceTrimmer cuts off the parts sampled by this many levels more coarsely
                 than half of the vertices; None leaves the surface closed.
         """
         program = os.environ[VARIABLE]
@@ -42,7 +42,7 @@ class PoissonRecon:
 
     @staticmethod
     def missing(*, trimmed: bool = False) -> str:
-        """Returns what is needed and is not there; nothing where all is."""
+        """Returns the missing requirement; empty if there is none."""
         for variable in (VARIABLE, TRIMMER) if trimmed else (VARIABLE,):
             if not Path(os.environ.get(variable) or os.devnull).is_file():
                 return f"{variable}, the path of the built program"
@@ -65,7 +65,7 @@ class PoissonRecon:
         )
 
     def _median_density(self) -> str:
-        """Asks a process of its own: what this one holds would count as the programs' memory."""
+        """Asks a separate process, because this one's memory would count as the programs'."""
         code = (
             "import sys; import numpy as np; from pathlib import Path; "
             "from bench.scans.ply import vertex_values; "

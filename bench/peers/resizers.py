@@ -12,7 +12,7 @@ Resize = Callable[[Any, int, int, str], Any]
 
 
 def prefilter() -> tuple[Resize, frozenset[str]]:
-    """Ours, which takes every channel as it stands."""
+    """Ours, which filters every channel unchanged."""
     module = importlib.import_module("prefilter")
 
     def resize(image: Any, width: int, height: int, filter: str) -> Any:
@@ -22,7 +22,7 @@ def prefilter() -> tuple[Resize, frozenset[str]]:
 
 
 def pillow() -> tuple[Resize, frozenset[str]]:
-    """Pillow, whose floats have one channel: each of several by itself."""
+    """Pillow, which resizes floats one channel at a time."""
     numpy = importlib.import_module("numpy")
     image_module = importlib.import_module("PIL.Image")
     filters = {"box": "BOX", "tent": "BILINEAR", "lanczos3": "LANCZOS"}
@@ -51,7 +51,7 @@ def openimageio() -> tuple[Resize, frozenset[str]]:
 
     def resize(image: Any, width: int, height: int, filter: str) -> Any:
         roi = oiio.ROI(0, width, 0, height, 0, 1, 0, image.shape[2])
-        # With no width named, filters are as wide as they ought to be for this ratio.
+        # Width 0 gives filters the width that suits this ratio.
         made = oiio.ImageBufAlgo.resize(oiio.ImageBuf(image), filters[filter], 0.0, roi, 1)
         if made.has_error:
             raise OSError(made.geterror())

@@ -24,7 +24,7 @@ class OpenVdb:
 
     @staticmethod
     def missing() -> str:
-        """Returns what is needed and is not there; nothing where all is."""
+        """Returns the missing requirement; empty if there is none."""
         if module() is not None:
             return ""
         return "OpenVDB's Python module; Debian has it as python3-openvdb"

@@ -17,10 +17,10 @@ from typing import Any
 
 
 class VoxelRemesh:
-    """`bpy.ops.object.voxel_remesh`, as a whole or without what comes after the contour.
+    """`bpy.ops.object.voxel_remesh`, as a whole or only up to the contour.
 
-    Then fixing poles, preserving the volume and transferring attributes are off; otherwise they are
-    as Blender has them at first.
+    Only up to the contour, fixing poles, preserving the volume and transferring attributes are off;
+    otherwise they have Blender's defaults.
     """
 
     def __init__(
@@ -35,7 +35,7 @@ class VoxelRemesh:
 
     @staticmethod
     def missing() -> str:
-        """Returns what is needed and is not there; nothing where all is."""
+        """Returns the missing requirement; empty if there is none."""
         return "" if shutil.which("blender") else "blender on PATH"
 
     def measure(self) -> "Measurement":
@@ -43,7 +43,7 @@ class VoxelRemesh:
         return run_clocked(self._command)
 
     def made(self, result: Path) -> None:
-        """Does the work once, and writes positions and quads, and what they were made of."""
+        """Does the work once, and writes positions and quads with their source."""
         run([*self._command, str(result)])
 
 
@@ -59,7 +59,7 @@ def write(mesh: Any, result: Path, **more: Any) -> None:
 
 
 def triangulated(obj: Any) -> dict[str, Any]:
-    """Returns the triangles that an object's mesh is drawn as."""
+    """Returns the triangulation of an object's mesh."""
     import numpy as np
 
     mesh = obj.data

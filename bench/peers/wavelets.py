@@ -4,7 +4,7 @@
 
 Run as a program, it does the work once and prints what `clock` does.
 usage: wavelets.py POINTS.ply TARGET.ply DEPTH files|memory THREADS OPTIONS
-OPTIONS are those of `prefilter.reconstruct`, as JSON.
+OPTIONS are keywords of `prefilter.reconstruct`, as JSON.
 """
 
 import json

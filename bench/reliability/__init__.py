@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What is kept where writing fails, or a program is killed."""
+"""Data safety when writing fails or a program is killed."""

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What small damaged files do: of points, textures, tables, octrees and drawings.
+"""Reads small damaged files of points, textures, tables, octrees and drawings.
 
 Files of some hundred bytes are damaged at random, and each is read in a process of its own, which
 may take 2 GiB and 10 s of a processor. It must be read, or refused by a ValueError, and take no
-more than 256 MiB and 5 s. What other modules read is here, too: laspy with lazrs, and pye57; kinds
-whose module cannot be imported are left out.
+more than 256 MiB and 5 s. Formats that other modules read are included (laspy with lazrs,
+and pye57); kinds whose module cannot be imported are left out.
 
 usage: damage.py [KIND...] [--count N] [--first SEED] [--keep FOLDER] [--json FILE]
   scripts/run python3 bench/reliability/damage.py
@@ -49,12 +49,11 @@ class Kind:
     """A kind of files.
 
     Attributes:
-        name: As tables call it; its end is that of file names.
+        name: Its name in tables, which ends with the file name extension.
         make: Writes a whole one.
         read: Reads one.
         needs: Modules without which there is nothing to test.
-        change: Damages the bytes of one so that checksums, which whoever means harm makes anew, are
-            right.
+        change: Damages the bytes of one and recomputes its checksums, as an attacker would.
     """
 
     name: str
@@ -66,7 +65,7 @@ class Kind:
 
 @dataclass
 class Found:
-    """What became of the files of a kind."""
+    """Outcomes of the files of a kind."""
 
     read: int = 0
     refused: int = 0
@@ -236,7 +235,7 @@ KINDS = (
 
 
 def _read_in_child(kind: Kind, path: Path, used: int) -> None:
-    """Reads a file, and ends this process with what became of it."""
+    """Reads a file, and ends this process with a status for the outcome."""
     signal.alarm(_MOST_WALL_SECONDS)
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
@@ -279,7 +278,7 @@ def tried(
     """Damages a file of a kind again and again.
 
     Returns:
-        What became of them, how many bytes the whole one has, and what went wrong.
+        The outcomes, the size of the whole file in bytes, and the faults.
     """
     path = folder / kind.name
     made = multiprocessing.get_context("spawn").Process(target=make, args=(kind.name, path))

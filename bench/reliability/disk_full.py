@@ -7,8 +7,8 @@ Disks are file systems in memory, which root can mount; else no file may grow be
 each run there must be the earlier files, and an exit status that is not 0; or the new files as
 they are elsewhere, and 0. Nothing else may be left.
 
-With --quota they are folders of a large disk with a limit each, on a file system (Btrfs) that says
-so as late as it can. That needs root, and Btrfs's programs.
+With --quota they are folders with a limit each on a large disk, whose file system (Btrfs) reports a
+full disk as late as it can. That needs root, and Btrfs's programs.
 
 usage: disk_full.py [PATTERN] [--sizes N] [--quota] [--json FILE]
   scripts/run python3 bench/reliability/disk_full.py            writers of the package, the command
@@ -38,18 +38,18 @@ from bench.reliability import writers  # noqa: E402
 from bench.reliability.writers import Writer  # noqa: E402
 
 EARLIER = b"earlier"
-# What has room for so many bytes, if it can be had.
+# Makes a disk with room for the given number of bytes; None if it cannot.
 Disk = Callable[[int], AbstractContextManager[Path | None]]
 _PAGE = 4096
-# Of a disk with quotas, and of what it keeps its lists in.
+# Sizes of a disk with quotas, and of its metadata nodes, in bytes.
 _LARGE, _NODE = 1 << 27, 1 << 12
-# How Zstandard begins, and the table that its seekable format ends with.
+# Magic numbers of Zstandard, and of the seek table at the end of its seekable format.
 _ZSTANDARD, _SEEK_TABLE = b"\x28\xb5\x2f\xfd", b"\xb1\xea\x92\x8f"
 _END_OF_FBX = bytes.fromhex("f85a8c6adef5d97eece90ce3758f290b")
 
 
 class Trial:
-    """A writer, what it reads, and what it writes where there is room."""
+    """A writer, its sources, and its output when there is room."""
 
     def __init__(self, writer: Writer, sources: Path, place: Path) -> None:
         """Runs it once."""
@@ -69,7 +69,7 @@ class Trial:
         return quietly(self.writer, self.sources, out)[0]
 
     def is_whole(self, name: str, data: bytes) -> bool:
-        """Tells whether a file that is never the same is whole."""
+        """Tells whether a file with varying contents is whole."""
         return is_whole(name, data)
 
     def is_named(self, text: str, out: Path) -> bool:
@@ -91,7 +91,7 @@ class Trial:
             shutil.copy(source, out)
 
     def earlier(self) -> dict[str, bytes]:
-        """Returns what `prepare` puts there."""
+        """Returns the files that `prepare` writes."""
         found = dict.fromkeys(self.writer.targets, EARLIER)
         source = self.sources / self.writer.in_place
         if self.writer.in_place and source.is_dir():
@@ -101,7 +101,7 @@ class Trial:
         return found
 
     def state(self, found: dict[str, bytes]) -> str:
-        """Returns "old" or "new" where files are just these, else what they are."""
+        """Returns "old" or "new" if the files are exactly these, else a description of them."""
         if found == self.earlier():
             return "old"
         if found.keys() == self.new.keys() and all(
@@ -112,7 +112,7 @@ class Trial:
 
 
 def is_whole(name: str, data: bytes) -> bool:
-    """Tells whether a file that is never the same, as it says when it was written, is whole."""
+    """Tells whether a file with a time stamp inside is whole."""
     if data == EARLIER:
         return False
     if name.endswith((".exr", ".tif", ".tx")):
@@ -129,14 +129,14 @@ def is_whole(name: str, data: bytes) -> bool:
     if name.endswith(".fbx"):
         return data.startswith(b"Kaydara FBX Binary") and data.endswith(_END_OF_FBX)
     if name.endswith((".blend", ".blend1")):
-        if data.startswith(_ZSTANDARD):  # As Blender 5 writes them.
+        if data.startswith(_ZSTANDARD):  # Blender 5 compresses its files.
             return data.endswith(_SEEK_TABLE)
         return data.startswith(b"BLENDER") and b"ENDB" in data[-64:]
     return False
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    """Returns what is in a folder and those within."""
+    """Returns the contents of a folder and its subfolders."""
     return {
         str(path.relative_to(folder)): path.read_bytes() if path.is_file() else b""
         for path in folder.rglob("*")
@@ -149,10 +149,10 @@ def is_left(name: str) -> bool:
 
 
 def quietly(writer: Writer, sources: Path, out: Path) -> tuple[int, str]:
-    """Runs a writer; what it prints is not shown.
+    """Runs a writer without showing its output.
 
     Returns:
-        The exit status, and what Python printed.
+        The exit status, and the output of Python.
     """
     with open(os.devnull, "w") as nowhere:
         kept = [os.dup(stream) for stream in (1, 2)]
@@ -218,7 +218,7 @@ def limited(disk: Path, size: int) -> Iterator[Path]:
     folder = disk / "limited"
     _btrfs("subvolume", "create", folder)
     try:
-        # An empty one takes some, and Btrfs sets some aside while it makes a file.
+        # An empty folder takes some space, and Btrfs reserves some while it makes a file.
         _btrfs("qgroup", "limit", size + 10 * _NODE, folder)
         yield folder
     finally:
@@ -248,16 +248,16 @@ def small_files(place: Path, size: int) -> Iterator[Path]:
 def on_full_disks(
     trial: Trial, place: Path, count: int, disk_of: Disk | None = None
 ) -> tuple[list[str], bool]:
-    """Tries disks from one that has room for what is there to one that has room for all.
+    """Tries disks from one with room for the earlier files up to one with room for everything.
 
     Args:
         trial: The writer.
-        place: Where folders are made.
-        count: How many disks.
-        disk_of: What makes them; None for file systems in memory.
+        place: The folder for the disks.
+        count: The number of disks.
+        disk_of: Makes the disks; None for file systems in memory.
 
-    Returns:
-        What was found in each, and whether they were disks, and not limits of files.
+            Returns:
+        The state after each, and whether they were disks rather than file size limits.
     """
     old = sum(-(-len(data) // _PAGE) for data in trial.earlier().values())
     most = old + 3 * sum(-(-len(data) // _PAGE) for data in trial.new.values()) + 4
@@ -331,7 +331,7 @@ def vanishing(trial: Trial, place: Path) -> str:
 
 
 def summary(found: list[str]) -> str:
-    """Returns how often there was what."""
+    """Returns the count of each state."""
     others = sorted({one for one in found if one not in ("old", "new")})
     text = f"{found.count('old')} old, {found.count('new')} new"
     return (

@@ -48,13 +48,13 @@ Begin = Callable[[Trial, Path], "Running"]
 
 @dataclass
 class Found:
-    """What there was after kills.
+    """Counts of the states after kills.
 
     Attributes:
-        old: How often the earlier files.
-        new: How often the new ones.
-        left: How often something of the dead was there until the next run.
-        others: What else there was.
+        old: Runs that left the earlier files.
+        new: Runs that left the new ones.
+        left: Runs whose leftovers stayed until the next run.
+        others: Descriptions of any other state.
     """
 
     old: int = 0
@@ -64,7 +64,7 @@ class Found:
 
     @property
     def count(self) -> int:
-        """How many kills there were."""
+        """The number of kills."""
         return self.old + self.new + len(self.others)
 
     def add(self, trial: Trial, out: Path) -> None:
@@ -84,19 +84,19 @@ class Found:
 
 
 def command(writer: Writer, *arguments: object) -> list[str]:
-    """Returns what runs a writer in a process of its own."""
+    """Returns the command line that runs a writer in a process of its own."""
     words = [name_of(writer), *map(str, arguments)]
     return [*blender(), *words] if writer.is_blenders else [sys.executable, _PROGRAM, *words]
 
 
 def blender(*options: str) -> list[str]:
-    """Returns what runs writers.py in a Blender."""
+    """Returns the command line that runs writers.py in a Blender."""
     script = ["--python-exit-code", "1", "--python", _PROGRAM, "--"]
     return ["blender", "--background", *options, *script]
 
 
 def name_of(writer: Writer) -> str:
-    """Returns what writers.py calls a writer."""
+    """Returns the name of a writer in writers.py."""
     return f"{writer.kind}:{writer.name}"
 
 
@@ -134,7 +134,7 @@ def at_random(
         trial: The writer.
         place: Where folders are made.
         count: How many kills.
-        chance: Where random moments come from.
+        chance: The generator of random moments.
         begin: Starts it; as a program of its own if None.
     """
     begin = begin or begin_program
@@ -167,10 +167,10 @@ def _seconds(trial: Trial, place: Path, begin: Begin) -> float:
 
 
 class Running:
-    """A writer that runs again and again, and says each time that it begins."""
+    """A writer that runs again and again, and prints a line at each start."""
 
     def __init__(self, number: int, said: IO[str], wait: Callable[[], object]) -> None:
-        """Takes the number of the process, what it prints, and what waits for its end."""
+        """Takes the process's number, its output, and a function that waits for its end."""
         self._number, self._said, self._wait = number, said, wait
 
     def wait_for_begin(self) -> None:
@@ -259,7 +259,7 @@ def the_blender() -> Copies:
 
 
 def begin_quickly(writer: Writer) -> Begin:
-    """Returns what starts a writer; what it imports is imported once."""
+    """Returns a function that starts a writer, whose imports are done once in advance."""
     if writer.is_blenders:
         return the_blender().begin
     import prefilter
@@ -288,7 +288,7 @@ class Apart(Trial):
 
 
 def main() -> None:
-    """Kills every writer that there is."""
+    """Kills every writer."""
     parser = argparse.ArgumentParser()
     parser.add_argument("way", choices=("calls", "random"))
     parser.add_argument("pattern", nargs="?", default="")
@@ -324,7 +324,7 @@ def main() -> None:
 
 
 def scene(sources: Path) -> list[str]:
-    """Returns what makes the scene."""
+    """Returns the command line that makes the scene."""
     return [*blender(), "scene", str(sources)]
 
 

@@ -2,10 +2,10 @@
 
 """Calls of the package with random arguments: other shapes, types, strides and values.
 
-Each call begins as one that is right; some arguments are then replaced, or their arrays are cut,
-turned, stretched, made of another type, or get values that are not finite, huge or far outside. It
-must return, or raise ValueError or MemoryError, within 10 s of a processor and 2 GiB; what it was
-given must stay as it was. A process makes some calls in a row, so that a crash is one.
+Each call starts out valid; some arguments are then replaced, or their arrays are cut, transposed,
+stretched, converted, or get values that are not finite, huge or far outside. It must return, or
+raise ValueError or MemoryError, within 10 s of a processor and 2 GiB; its arguments must stay
+unchanged. A process makes some calls in a row, so that a crash counts as one.
 
 usage: odd_calls.py [PATTERN] [--count N] [--first SEED] [--json FILE]
   scripts/run python3 bench/reliability/odd_calls.py
@@ -87,7 +87,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
 
 
 def odd(value: Any, chance: np.random.Generator) -> Any:
-    """Returns something else in place of an argument."""
+    """Returns a changed argument."""
     kind = int(chance.integers(0, 8))
     if kind == 0 or not isinstance(value, np.ndarray):
         return _ODD[int(chance.integers(0, len(_ODD)))]
@@ -116,7 +116,7 @@ def odd(value: Any, chance: np.random.Generator) -> Any:
 
 
 def call_oddly(name: str, seed: int) -> str:
-    """Makes a call, and returns what was wrong with how it ended; empty for nothing."""
+    """Makes a call, and returns the fault in its outcome; empty for none."""
     call, good = CALLS[name]
     chance = np.random.default_rng([seed, *name.encode()])
     arguments = dict(good)
@@ -136,7 +136,7 @@ def call_oddly(name: str, seed: int) -> str:
 
 
 def calls_in_child(name: str, seeds: range) -> tuple[int, list[str]]:
-    """Makes calls in a process of its own; returns its exit status and what was wrong."""
+    """Makes calls in a process of its own; returns its exit status and the faults."""
     read, write = os.pipe()
     child = os.fork()
     if child == 0:

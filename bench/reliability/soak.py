@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Whether a Blender that is used for a long time keeps growing.
+"""Tests whether a Blender that is used for a long time keeps growing.
 
 Every operator's test in tests/blender/test_smoke.py runs again and again in one Blender: then a
 scene is changed and taken back, and bakes are canceled at random moments. Memory, open files,
-threads and data-blocks are looked at after half of the runs, when all that is loaded once is
-there, and at the end: they are to be flat, memory but for 64 KiB a run, which pytest keeps of it.
-Memory is what the allocator has given out and what Python's objects take; the pages of the
-process, which it returns when it likes, are told beside it.
+threads and data-blocks are measured after half of the runs, when everything that loads once is
+loaded, and at the end. They must not grow, except memory by 64 KiB a run, which pytest keeps.
+Memory is the sum of the allocator's blocks in use and of Python's objects; the process's resident
+pages, which are returned at its own pace, are reported beside it.
 
 usage: blender --background --python soak.py -- [PATTERN] [--count N] [--json FILE]
   scripts/run blender --background --factory-startup --python-exit-code 1 \\
@@ -44,7 +44,7 @@ _BYTES_OF_PYTHONS_BLOCK = 64
 
 
 class _Mallinfo2(ctypes.Structure):
-    """As in glibc's malloc.h."""
+    """`struct mallinfo2` of glibc's malloc.h."""
 
     _names = "arena ordblks smblks hblks hblkhd usmblks fsmblks uordblks fordblks keepcost"
     _fields_ = [(name, ctypes.c_size_t) for name in _names.split()]
@@ -66,7 +66,7 @@ def _allocated() -> int:
 
 @dataclass(frozen=True)
 class State:
-    """What a process holds."""
+    """The resources that a process holds."""
 
     kib: float
     resident_kib: float
@@ -76,7 +76,7 @@ class State:
 
     @classmethod
     def now(cls) -> "State":
-        """Returns that of this process."""
+        """Returns the state of this process."""
         gc.collect()
         taken = _allocated() + _BYTES_OF_PYTHONS_BLOCK * sys.getallocatedblocks()
         resident = int(Path("/proc/self/statm").read_text().split()[1]) * _PAGE_KIB
@@ -92,7 +92,7 @@ class State:
 
 @dataclass(eq=False)  # pytest keeps plugins by their hashes.
 class Soak:
-    """Runs in a row of each name: what the process held early, and last."""
+    """Repeated runs of each name: the process's resources early, and at the end."""
 
     count: int
     early: dict[str, State] = field(default_factory=dict)
@@ -118,7 +118,7 @@ class Soak:
             self.look(getattr(item, "originalname", item.name), run.params["run_number"])
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Keeps the names of what failed."""
+        """Keeps the names of the failed tests."""
         if report.failed:
             self.failed.append(report.nodeid.rpartition("::")[2])
 
@@ -200,7 +200,7 @@ def main() -> None:
     chosen = ["-k", options.pattern] if options.pattern else ["--deselect", "test_every_operator"]
     quiet = ["-q", "--no-header", "-p", "no:cacheprovider", "--disable-warnings", "--tb=short"]
     keep = ["-o", "tmp_path_retention_policy=none"]
-    # Folders of pytest's own go when others begin beside this.
+    # Other runs of pytest delete its default folders.
     with tempfile.TemporaryDirectory() as folder:
         where = ["--basetemp", str(Path(folder) / "runs"), str(TESTS / "test_smoke.py")]
         pytest.main([*quiet, *keep, *chosen, *where], plugins=[soak])

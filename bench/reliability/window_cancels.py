@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Whether work that is canceled by Esc in a window leaves anything.
+"""Tests whether work that is canceled by Esc in a window leaves anything.
 
 Operators start as users start them, and Esc is pressed at a random moment of the time that each
 takes. Nothing may have changed in the scene but by work that was done already; memory, files,
@@ -76,7 +76,7 @@ WORK: dict[str, Callable[[], None]] = {
 
 
 def scene() -> dict[str, tuple[int, ...]]:
-    """Returns what there is, and how large it is."""
+    """Returns the scene's objects, images and meshes with their sizes."""
     return {
         **{f"object {one.name}": () for one in bpy.data.objects},
         **{f"image {one.name}": tuple(one.size) for one in bpy.data.images},
@@ -88,7 +88,7 @@ def scene() -> dict[str, tuple[int, ...]]:
 
 
 class Cancels:
-    """What became of the work that was canceled."""
+    """Outcomes of the canceled work."""
 
     def __init__(self, count: int) -> None:
         """Takes how often each operator is started."""
@@ -147,7 +147,7 @@ class Cancels:
 
 
 def _at_rest() -> State:
-    """Returns what the process holds where no step of undo has a result."""
+    """Returns the process's resources once no undo step holds a result."""
     for _ in range(UNDO_STEPS + 1):
         bpy.ops.ed.undo_push(message="rest")
     return State.now()

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""All that writes files: writers of the package, the command, and the commands of Blender.
+"""Everything that writes files: writers of the package, the command, and the commands of Blender.
 
 usage: writers.py NAME SOURCES OUT [COUNT]     (Blender's in a Blender, behind --)
        writers.py copies
 
-Runs one, COUNT times in turn, into a folder: `SOURCES` holds what `make_sources` has made. It
+Runs one, COUNT times in turn, into a folder: `SOURCES` holds the output of `make_sources`. It
 prints a line before each, and exits with the status of the last one. With "copies" it reads lines
 of NAME, SOURCES and OUT with tabs between, and runs each again and again in a copy of this process,
 which must not have used threads, until that is killed. It prints the copy's number before, and
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from bench.report import Report
 
 SIDE = 64
-# More runs in turn than end.
+# More runs than any test reaches.
 MANY = 1000000
 # A scene with its images, and Blender's texture cache of them.
 CACHED = "cached"
@@ -38,16 +38,17 @@ CACHED = "cached"
 
 @dataclass(frozen=True)
 class Writer:
-    """What writes a file, or a set of files.
+    """A writer of a file, or of a set of files.
 
     Attributes:
-        name: As a table calls it.
-        arguments: Of the command; "in/" and "out/" stand for folders. Empty for the package's own.
-        targets: The names of what it writes.
-        call: Of the package: what writes, into a folder.
+        name: Its name in tables.
+        arguments: The command's arguments; "in/" and "out/" stand for folders. Empty for the
+            package's own.
+        targets: The names of its output files.
+        call: For the package: a function that writes into a folder.
         is_blenders: Whether it is a command of Blender.
-        in_place: The name of a source that it writes to: a file, copied to the folder of what it
-            writes, or a folder of files.
+        in_place: The name of a source that it overwrites: a file, copied to the output folder, or
+            a folder of files.
     """
 
     name: str
@@ -65,7 +66,7 @@ class Writer:
         return "blender" if self.is_blenders else "command"
 
     def missing(self, sources: Path) -> str:
-        """Returns what it needs and is not here: a module, or a source; empty for none."""
+        """Returns the missing module or source; empty if there is none."""
         if self.in_place and not (sources / self.in_place).exists():
             return self.in_place
         needed = ("OpenImageIO", "trimesh") if self.kind == "command" else ()
@@ -283,7 +284,7 @@ def _solid() -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
 
 
 def make_sources(folder: Path) -> None:
-    """Writes what is read; the scene is made by Blender."""
+    """Writes the sources, except the scene, which Blender makes."""
     from prefilter.workflows.files import png
 
     noise = np.random.default_rng(3)
@@ -346,7 +347,7 @@ def make_scene(folder: Path) -> None:
 
 @functools.cache
 def _output() -> int:
-    # Commands of Blender keep what they say apart: after one, prints go to standard error.
+    # Blender's commands redirect output: after one, prints go to standard error.
     return os.dup(1)
 
 

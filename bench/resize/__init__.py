@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images of other sizes."""
+"""Resizing of images."""

@@ -5,9 +5,9 @@
 Usage: scripts/run python3 bench/resize/bytes.py [--rounds N] [--side N] [--json FILE]
 
 The others are libvips (pyvips), as far as this Python can import it, and fast_image_resize and
-pic-scale, if PREFILTER_RUST_RESIZERS names what `cargo build --release` makes of
-bench/peers/rust_resizers. Times are seconds of the processor, medians over the rounds; all have one
-thread. The second table has how far each is from float64 sums that are rounded, in steps of bytes.
+pic-scale, if PREFILTER_RUST_RESIZERS names the library that `cargo build --release` makes
+of bench/peers/rust_resizers. Times are processor seconds, medians over the rounds; all have one
+thread. The second table has the differences from rounded float64 sums, in steps of bytes.
 Fails where a criterion does not hold.
 """
 
@@ -30,10 +30,10 @@ from bench.resize.compare import EDGE, dense
 
 SHRINK = 4
 SMALL = 256
-# What it is called, channels, and whether it is in linear light.
+# Name, channels, and whether in linear light.
 WORK = (("RGB", 3, False), ("RGBA", 4, False), ("RGB, linear light", 3, True))
 MOST = {"RGB": 1.5, "RGBA": 1.5, "RGB, linear light": 0.25}
-"""Of libvips's time, at the most."""
+"""Greatest processor time, as a share of libvips's."""
 FILTERS = ("lanczos3", "radial3")
 MOST_RADIAL = 2.0
 
@@ -130,7 +130,7 @@ def accuracy(report: Report, libraries: dict[str, Resize]) -> None:
 
 
 def as_light(image: NDArray[np.uint8], srgb: bool) -> NDArray[Any]:
-    """What the filter reads."""
+    """Returns the filter's input: linear light, or values from 0 to 1."""
     light = image / 255
     if srgb:
         light = np.where(light <= 0.04045, light / 12.92, ((light + 0.055) / 1.055) ** 2.4)
@@ -140,7 +140,7 @@ def as_light(image: NDArray[np.uint8], srgb: bool) -> NDArray[Any]:
 
 
 def as_bytes(light: NDArray[Any], srgb: bool) -> NDArray[Any]:
-    """The inverse, in steps of bytes that are not rounded."""
+    """Encodes light in steps of bytes, without rounding."""
     if light.shape[2] == 4:
         light[..., :3] /= light[..., 3:]
     light = light.clip(0, 1)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares resized images with those of other libraries: time and accuracy.
+"""Compares image resizing with other libraries: time and accuracy.
 
 Usage: scripts/run python3 bench/resize/compare.py [--rounds N] [--side N] [--json FILE]
 
 Other libraries are Pillow, OpenImageIO, libvips (pyvips) and OpenCV, as far as this Python can
 import them; all have one thread, and work on floats. Times are the least of rounds in turns, where
-a library does what the filter's name says: some have another box, or enlarge by another filter.
+a library implements the filter of that name: some have another box, or enlarge by another filter.
 """
 
 import argparse
@@ -29,7 +29,7 @@ from bench.report import Report, add_json_option
 WORK = ((1, 1 / 4), (4, 1 / 4), (4, 2 / 3), (4, 3 / 2))
 TIMED = ("box", "tent", "mitchell", "lanczos3", "radial3")
 CLOSED_FORMS = ("box", "tent", "mitchell", "lanczos3")
-SAME = 0.01  # How far a library may be from the definition for its time to count.
+SAME = 0.01  # Largest difference from the definition for a library's time to count.
 EDGE = 12  # New pixels, whose filters reach over the edge: libraries differ there.
 OURS_ONLY = ("least-squares",)
 
@@ -84,7 +84,7 @@ def time_all(
 
 
 def does_it(resize: Resize, filter: str, factor: float) -> bool:
-    """Tells whether a library does what the filter's name says, and not something quicker."""
+    """Tells whether a library implements the named filter, and not something quicker."""
     if filter not in CLOSED_FORMS:
         return True
     return definition_error(resize, filter, 192, round(192 * factor)) < SAME

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Makes pictures smaller to a quarter and enlarges them again: what comes back, and what rings.
+"""Shrinks pictures to a quarter and enlarges them again: remaining error, and ringing.
 
 Usage: scripts/run python3 bench/resize/quality.py [--json FILE]
 
@@ -119,9 +119,9 @@ def error_enlarged(small: Array, picture: Array, by: str) -> float:
 
 
 def ringing(small: Array, picture: Array) -> float:
-    """How far pixels lie beyond all pixels under their tent, encoded, in steps of bytes.
+    """Excess of pixels over the range of all pixels under their tent, encoded, in steps of bytes.
 
-    Of a thousand pixels the one that lies farthest off, in its worst channel.
+    The result is the 99.9th percentile of pixels, each by its worst channel.
     """
     padded = np.pad(picture, ((SHRINK // 2,) * 2, (SHRINK // 2,) * 2, (0, 0)), mode="edge")
     around = sliding_window_view(padded, (2 * SHRINK, 2 * SHRINK), axis=(0, 1))

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares sampling tables with trilinear interpolation that reads finer levels, as games have it.
+"""Compares sampling tables with trilinear interpolation that reads finer levels, as in games.
 
 Usage: scripts/run python3 -m bench.sampling.biases [--json FILE] [--pictures FOLDER]
 
-The images are those of bench/sampling/figures.py, or all in a folder. Trilinear interpolation has
+The images come from bench/sampling/figures.py, or from a folder. Trilinear interpolation has
 its best bias for each image, and where the mean over a pixel is the truth also the best of all
 filters of levels. Numbers are PSNRs in dB over ten scales, of values in linear light over all
 channels. Ends with status 1 where a criterion does not hold.
@@ -26,7 +26,7 @@ Array = NDArray[np.floating]
 
 BIASES = (0.0, -0.25, -0.5, -0.75, -1.0, -1.25)  # levels
 MEANS = ("box", "tent")  # Levels of tables for the mean over a pixel.
-SIDE = 1024  # Of pictures at most.
+SIDE = 1024  # Largest side of pictures.
 NAMES = [f"{texels} texels" for texels in TEXELS]
 
 
@@ -58,7 +58,7 @@ def pictures(folder: Path) -> Iterator[tuple[str, Array]]:
 
 
 class Comparison:
-    """How close samples of an image are.
+    """Errors of samples of an image.
 
     Attributes:
         itself: By filters of levels and tables, against that filter: trilinear interpolation at its
@@ -92,7 +92,7 @@ class Comparison:
                 self.means[filter] = self._tables(levels, filter, "box", mean)
 
     def best_for_mean(self) -> tuple[str, float, float]:
-        """The filter of levels with which trilinear interpolation is best, how close, and where."""
+        """The best level filter for trilinear interpolation, its PSNR, and its bias."""
         filter = max(self.trilinear, key=self.trilinear.__getitem__)
         return filter, *self.trilinear[filter]
 
@@ -120,7 +120,7 @@ class Comparison:
 
 
 def psnr(found: list[Array], exact: list[Array]) -> float:
-    """Of the mean square error over all scales."""
+    """The peak signal-to-noise ratio, from the mean square error over all scales."""
     squares = [np.mean((a.astype(float) - b) ** 2) for a, b in zip(found, exact, strict=True)]
     return float(-10 * np.log10(np.mean(squares)))
 

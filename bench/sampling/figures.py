@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares samples by tables with those of exact filters, and with trilinear interpolation.
+"""Compares samples by tables with exact filters, and with trilinear interpolation.
 
 Usage: scripts/run python3 -m bench.sampling.figures [--json FILE]
 
-The figures are those of docs/sampling.md; the other images the base colors of models in
+The figures are in docs/sampling.md; the other images are the base colors of models in
 ../shared/data/textured, without which it does with figure 6.1's. Every number but the steps is a
 PSNR to the exact filter in dB: 10 times the logarithm of 1 over the mean square difference of
 values in linear light, over all channels. Ends with status 1 where a criterion does not hold.
@@ -76,7 +76,7 @@ def of_figures(report: Report) -> None:
 
 
 def images() -> Iterator[tuple[str, Array]]:
-    """Those that are there, in linear light, three channels."""
+    """Yields the available images, in linear light, three channels."""
     yield "figure 6.1", drawn(figures.SIDE)
     yield from textures()
 
@@ -181,7 +181,7 @@ def walks() -> Iterator[tuple[str, Array, Array]]:
 
 
 def steps(report: Report) -> None:
-    """How far neighboring samples differ beyond what the filter itself changes."""
+    """Measures steps between neighboring samples beyond the change of the exact result."""
     sources = {
         "ramp, by its slope": ramp(SMALL),
         "figure 6.1": drawn(SMALL),
@@ -213,7 +213,7 @@ def steps(report: Report) -> None:
 
 
 def largest_steps(image: Array, filter: str, *, by_slope: bool) -> dict[str, tuple[float, float]]:
-    """Of pans and of zooms, by how they are sampled."""
+    """The largest steps of pans and of zooms, by sampling method."""
     levels = prefilter.sampling_levels(image, filter)
     largest: dict[str, dict[str, float]] = {}
     for kind, places, scales in walks():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures samples of one texel each: how far their means are from the exact filter.
+"""Measures the error of means of one-texel samples against the exact filter.
 
 Usage: scripts/run python3 bench/sampling/one_texel.py [--pixels N] [--json FILE]
 
@@ -31,11 +31,11 @@ Array = NDArray[np.float32]
 FILTER = "lanczos2"
 SCALE = 1024 / 89  # As in figure 6.1.
 COUNTS = (1, 4, 16, 64)
-# Of levels less the picture's mean, which is added to the samples.
+# Samples levels minus the picture's mean, and adds the mean back.
 ABOUT_MEAN = "8 texels, about the mean"
 # Without ramps and for white images it reads fewer texels of finer levels, which differ more.
 FOUR_WHITE = "4 texels, white, no ramps"
-# With this many samples they are to be closer than trilinear interpolation.
+# Sample counts at which they must be closer than trilinear interpolation.
 BARS = {FOUR_WHITE: 16, "8 texels": 64, ABOUT_MEAN: 64}
 TABLES: dict[str, prefilter.SamplingTable | str] = {
     "8 texels": prefilter.SamplingTable.standard(FILTER, 8),
@@ -78,7 +78,7 @@ def main() -> None:
 
 
 def measured(picture: Array, name: str, pixels: int) -> list[float]:
-    """The error for each number of samples, and that of the weighted sum itself."""
+    """The error for each number of samples, and the error of the weighted sum itself."""
     random = np.random.default_rng(0)
     if name == ABOUT_MEAN:
         picture = picture - picture.mean(axis=(0, 1))
@@ -103,7 +103,7 @@ def measured(picture: Array, name: str, pixels: int) -> list[float]:
 
 
 def magnitude(name: str) -> float:
-    """Of the weights of the texels that are picked: 1 where none of them is negative."""
+    """The mean absolute weight of the picked texels: 1 if none is negative."""
     random = np.random.default_rng(1)
     levels = prefilter.sampling_levels(np.zeros((1024, 1024, 1)), FILTER)
     places, numbers = random.random((20_000, 2)), random.random(20_000)

@@ -16,7 +16,7 @@ class Peer {
   virtual void sample(const Samples& samples, float* result) = 0;
 };
 
-/// Trilinear interpolation as one writes it down.
+/// Trilinear interpolation, written straightforwardly.
 std::unique_ptr<Peer> written_trilinear(const Texture& texture, bool bytes);
 
 /// OpenImageIO's TextureSystem; trilinear, from a tiled file that its cache holds.

@@ -23,7 +23,7 @@ void add_pixel(Samples& samples, int side, int column, int row) {
   const double mip_value = 0.5 + 3.0 * (row + 0.5) / side;
   const double scale = std::exp2(mip_value);
   const double x = (column + 0.5 - side / 2.0) * scale;
-  // Where rows of that distance lie: the integral of the scale over them.
+  // The position of rows at that distance: the integral of the scale over them.
   const double y = (scale - std::sqrt(2.0)) * side / (3.0 * std::log(2.0));
   const auto wrapped = [](double texels) { return texels / kSide - std::floor(texels / kSide); };
   add(samples, wrapped(0.94 * x - 0.342 * y), wrapped(0.342 * x + 0.94 * y), scale);

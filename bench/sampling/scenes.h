@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What is sampled, and where.
+// Textures and sample positions of the sampling benchmarks.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ struct Texture {
   Pyramid view(bool of_bytes) const;
 };
 
-/// Samples; numbers as floats too, which is what peers take.
+/// Samples, with numbers also as floats for peers.
 struct Samples {
   std::string name;
   std::vector<std::array<double, 2>> coordinates;

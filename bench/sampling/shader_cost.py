@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Counts what a sample by a shader takes: texels read, and operations on single numbers.
+"""Counts the cost of a sample in a shader: texels read, and scalar operations.
 
 Usage: python3 -m bench.sampling.shader_cost [--json FILE]
 
-Counted is what SPIRV-Tools leave of glslang's code for the HLSL of the standard tables, with the
-wrap mode clamp. An operation on a vector counts once a component, moves do not count. What stands
-in the loop over texels, the only branch, counts once a texel. Beside it stands trilinear
-interpolation in the same language, which reads its eight texels as tables do; graphics cards have
-it built in.
+The count is over the SPIR-V that SPIRV-Tools leave of glslang's code for the HLSL of the standard
+tables, with the wrap mode clamp. A vector operation counts once per component; moves do not count.
+The loop over texels, the only branch, counts once per texel. Trilinear interpolation in the same
+language, which reads its eight texels as tables do, is the reference; graphics cards have it built
+in.
 """
 
 import argparse
@@ -97,7 +97,7 @@ def operations(code: str) -> Counter[str]:
 
 
 def cost(source: str, texels: int) -> Counter[str]:
-    """Counts what a sample takes, given how often the loop, if there is one, is run through."""
+    """Counts the cost of a sample, given the number of passes through the loop, if any."""
     code = compiled(source)
     before, loop, rest = code.partition("OpLoopMerge")
     if not loop:

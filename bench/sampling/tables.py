@@ -4,12 +4,12 @@
 
 Usage: scripts/run python3 -m bench.sampling.tables [--certify] [--json FILE]
 
-Errors are those of equation 6.3 over all places and scales, as shares of trilinear interpolation's
-of the same mipmap. Measured are the standard tables, and those for white images, which the
-dissertation has; what larger ones of these reach; the curves of figure 6.6, which
-docs/pictures/table_errors.py draws; and steps of samples across borders of subdomains, in the
-picture of docs/resize.md. With --certify those tables are proven to be the best that can be within
-minutes each. Fails where a criterion does not hold.
+Errors follow equation 6.3 over all positions and scales, as shares of trilinear interpolation's on
+the same mipmap. The program measures the standard tables; the tables for white images, as in the
+dissertation, and larger ones; the curves of figure 6.6, which docs/pictures/table_errors.py draws;
+and steps of samples across borders of subdomains, in the picture of docs/resize.md. With --certify
+those tables are proven to be the best possible within minutes each. Fails where a criterion does
+not hold.
 """
 
 import argparse
@@ -67,7 +67,7 @@ def main() -> None:
 
 
 def standard_tables(report: Report) -> None:
-    """Those that ship: how good, and how long to build."""
+    """Reports the standard tables: their errors and build times."""
     rows = []
     began = time.process_time()  # whatever else the machine does
     kinds = [*((name, None) for name in FILTERS), *STANDARD_TARGETS]
@@ -91,7 +91,7 @@ def standard_tables(report: Report) -> None:
 
 
 def white_tables(report: Report) -> None:
-    """The same for white images, as in the dissertation."""
+    """Reports the tables for white images, as in the dissertation."""
     head = (
         "filter", "4 texels", "6 texels", "8 texels", "8, without ramps", "those weighted",
         "dissertation", "8, two levels", "8, one level",
@@ -146,7 +146,7 @@ def weighted_ratio(table: prefilter.SamplingTable) -> float:
 
 
 def larger_tables(report: Report) -> None:
-    """How far below the standard tables finer and quadratic ones go."""
+    """Reports the errors of finer and of quadratic tables relative to the standard ones."""
     rows = []
     for subdomains, degree in LARGER:
         began = time.perf_counter()
@@ -191,7 +191,7 @@ def figure_curves(report: Report) -> None:
 
 
 def steps_at_borders(report: Report) -> None:
-    """How samples jump where sets change: for the worst image there is, and in a picture."""
+    """Reports the steps of samples where sets change: for the worst image, and in a picture."""
     rows = []
     picture = drawn().mean(axis=2, keepdims=True)
     for name in FILTERS:
@@ -212,7 +212,7 @@ def steps_at_borders(report: Report) -> None:
 
 
 def picture_steps(table: prefilter.SamplingTable, levels: list[np.ndarray]) -> Iterator[np.ndarray]:
-    """Those of samples at random places of all kinds of borders, with three levels available."""
+    """Yields sample steps across random borders of all kinds, with three levels available."""
     random = np.random.default_rng(0)
     count = PLACES // 4
     aside = 1e-5
@@ -242,7 +242,7 @@ def difference(
     places: list[tuple[np.ndarray, np.ndarray]],
     level: np.ndarray,
 ) -> np.ndarray:
-    """Of samples at two lists of places, in cells of a level, and shares of the way to it."""
+    """Differences of samples at two lists of positions, in cells of a level and fractions of it."""
     first, second = (
         prefilter.sample(
             levels,
@@ -269,7 +269,7 @@ def error_in(
 
 
 def certificates(report: Report, *, everything: bool) -> None:
-    """How many sets are proven to be the best, and how far from the best others may be."""
+    """Reports how many sets are proven optimal, and bounds the distance of the others."""
     rows = []
     for name, texels, ramp_weight in PROVEN if everything else PROVEN_SOON:
         build = partial(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Checks what the figures rest on: distances, what counts as closed, and that the sets are as said.
+"""Checks the basis of the figures: distances, the test for closedness, and the sets' properties.
 
 Usage: scripts/run python3 -m bench.scans.check
 
@@ -41,7 +41,7 @@ def main() -> None:
 
 
 def check_manifolds(report: Report) -> None:
-    """Known meshes and what they are: (closed, 2-manifold)."""
+    """Checks `is_closed` and `is_manifold` on known meshes."""
     touching = np.concatenate([TETRAHEDRON, np.where(TETRAHEDRON == 0, 0, TETRAHEDRON + 3)])
     flipped = np.concatenate([TETRAHEDRON[:3], TETRAHEDRON[3:, ::-1]])
     known = {
@@ -113,7 +113,7 @@ def brute_force(point: Floats, corners: Floats) -> float:
 
 
 def check_sets(report: Report, model: sets.Model, random: np.random.Generator) -> None:
-    """What was done to the points."""
+    """Checks the sampling, noise and other changes applied to the points."""
     points, normals = cloud = model.draw(100_000, random)
     shares = np.bincount(
         prefilter.nearest_points(points, model.mesh.positions, model.mesh.triangles)[0],

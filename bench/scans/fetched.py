@@ -17,7 +17,7 @@ from bench.scans.scans import merged
 from bench.scans.sets import Cloud
 
 CLONES = "PREFILTER_SCAN_CLONES"
-UP = "up"  # Normals of what was seen from the air.
+UP = "up"  # Normals of scans from the air.
 PCL, PDAL = "PointCloudLibrary/data", "PDAL/PDAL"
 SCAN_MATCHING = "thegyro/Project4-Scan-Matching"
 
@@ -30,7 +30,7 @@ class Fetched:
         repository: OWNER/NAME.
         path: Of its file there; a .conf file names others.
         terms: The licence.
-        what: It shows.
+        what: Its subject.
         is_open: It is not of a thing seen from all sides.
         toward: Where normals point that the file does not have: to the viewpoint if it has one,
             `UP`, or outward.

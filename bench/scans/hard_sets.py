@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Clouds as scanners write them, and shapes that are hard at the depth at hand; truth where known.
+"""Clouds as scanners write them, and shapes that are hard at their depth; truth where known.
 
-Each set is a cloud of oriented points and, but for scans, the surface that they were taken from.
-Cells are those of depth 9, whatever depth a set is reconstructed at. The same on every run.
+Each set is a cloud of oriented points and, except for scans, the surface that they were taken from.
+Cells are of depth 9, whatever depth a set is reconstructed at. Every run makes the same sets.
 """
 
 import argparse
@@ -26,7 +26,7 @@ CYCLOIDAL = "PREFILTER_CYCLOIDAL"  # The path of trimesh's cycloidal.ply.
 NOISE = 0.25  # Cells, along the view.
 VIEWS = 14
 VIEW_SIZE = 256  # Pixels.
-STEEPEST = 78.0  # Degrees between the view and the normal of what a scanner still sees.
+STEEPEST = 78.0  # Largest angle in degrees between the view and a visible normal.
 THINNEST = (0.75, 1.0, 1.5, 2.0, 3.0)  # Cells.
 DENSITIES = 1000.0
 
@@ -40,7 +40,7 @@ class HardSet:
 
 
 def joined(meshes: Sequence[Triangles]) -> Triangles:
-    """Returns all of them as one."""
+    """Returns several meshes as one."""
     starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
     return Triangles(
         np.concatenate([mesh.positions for mesh in meshes]),
@@ -76,7 +76,7 @@ def ball(segments: int, radius: float = 1.0) -> Triangles:
 
 
 def turned(mesh: Triangles) -> Triangles:
-    """Returns a mesh that is along no axis of the cells."""
+    """Returns a mesh rotated away from the axes of the cells."""
     x, y = np.radians((23.0, 31.0))
     about_x = np.array([[1, 0, 0], [0, np.cos(x), -np.sin(x)], [0, np.sin(x), np.cos(x)]])
     about_y = np.array([[np.cos(y), 0, np.sin(y)], [0, 1, 0], [-np.sin(y), 0, np.cos(y)]])
@@ -143,7 +143,7 @@ def connector(_: Path) -> HardSet:
 
 
 def bust(shared: Path) -> HardSet:
-    """A head without its base: what is open there is not seen."""
+    """A head without its base: the opening is not seen by the scanner."""
     mesh = ply.read_mesh(shared / "meshes/igea_tri.ply")
     heights = mesh.positions[:, 1]
     level = heights.min() + 0.25 * np.ptp(heights)
@@ -198,7 +198,7 @@ def simulated(shared: Path, *, noise: float, apart: float) -> HardSet:
 def range_scan(
     samples: Floats, view: Floats, noise: float, random: np.random.Generator
 ) -> tuple[Floats, Floats]:
-    """What a scanner far away, in direction `view`, sees of samples; normals are of its grid."""
+    """Returns samples seen by a far scanner in direction `view`, with normals of its grid."""
     across = np.cross(view, (0, 1, 0) if abs(view[1]) < 0.9 else (1, 0, 0))
     across /= np.linalg.norm(across)
     frame = np.stack([across, np.cross(view, across), view])
@@ -223,7 +223,7 @@ def noisy_ranges(shared: Path) -> HardSet:
 
 
 def misregistered(shared: Path) -> HardSet:
-    """The same, each moved by a cell."""
+    """Range scans, each moved by a cell."""
     return simulated(shared, noise=NOISE, apart=1)
 
 
@@ -246,17 +246,17 @@ MADE: dict[str, Callable[[Path], HardSet]] = {
     "misregistered": misregistered,
     **CLEAN,
 }
-DEPTHS = {"ball500": 12}  # Where it is not that of all.
+DEPTHS = {"ball500": 12}  # Sets with a depth of their own.
 OPEN = tuple(name for name, found in fetched.FETCHED.items() if found.is_open)
 
 
 def names() -> list[str]:
-    """Returns the sets there are."""
+    """Returns the names of the sets."""
     return [*MADE, *sets.SCANS, *fetched.FETCHED]
 
 
 def prepare(folder: Path, name: str, depth: int, shared: Path) -> dict[str, Any]:
-    """Makes a set unless it is there; returns its files, and what a comparison asks.
+    """Makes a set unless it exists; returns its files and the settings of the comparison.
 
     Raises:
         ValueError: There is no set of that name.
@@ -286,7 +286,7 @@ def prepare(folder: Path, name: str, depth: int, shared: Path) -> dict[str, Any]
 
 
 def carried_depth(points: Path) -> int:
-    """Returns the depth that prefilter takes where none is given."""
+    """Returns prefilter's default depth for the points."""
     report = prefilter.ReconstructionReport()
     cloud = (np.ascontiguousarray(part) for part in ply.read_points(points))
     prefilter.reconstruct(*cloud, report=report)

@@ -32,11 +32,11 @@ HIGH = 99.9
 
 @dataclass(frozen=True)
 class Quality:
-    """What a surface is like.
+    """Properties and errors of a surface.
 
     Attributes:
-        triangles: How many there are.
-        is_closed: Every edge is between two triangles, which agree on what is inside.
+        triangles: Their number.
+        is_closed: Every edge is between two triangles that agree on the inside.
         is_manifold: It is closed, and the triangles around each vertex are one fan.
         mean: Distance of surface and source [cells]; of the points from the surface where there
             is no source.
@@ -44,7 +44,7 @@ class Quality:
         largest: Its largest value.
         to_source: The mean from the surface to the source alone.
         from_source: The mean from the source to the surface alone.
-        degrees: The angle of the surface's normals to those of the source, mean.
+        degrees: The mean angle between the normals of the surface and of the source.
     """
 
     triangles: int
@@ -104,7 +104,7 @@ def manifold_kind(mesh: Triangles) -> tuple[bool, bool]:
         return False, False
     if (ordered != twins[twin_order]).any():
         return False, False
-    # An edge shares its start with the edge after its twin; what hangs together so is one fan.
+    # An edge shares its start with the edge after its twin; edges connected so form one fan.
     twin = np.empty_like(order)
     twin[order] = twin_order
     after = twin - twin % 3 + (twin + 1) % 3

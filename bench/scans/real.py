@@ -8,12 +8,11 @@ Usage: scripts/run python3 bench/scans/real.py FOLDER [SET...] [--depth N] [--ro
 
 FOLDER keeps the sets (see hard_sets.py), and what Poisson made of them with its measures, so that
 it runs again with --again alone. PREFILTER_POISSONRECON and PREFILTER_SURFACETRIMMER are the paths
-of built programs, PREFILTER_SELF_INTERSECTIONS that of the one of bench/voxels. --options are
-keywords of `prefilter.reconstruct`, values as JSON. At depth 0 both have the one that prefilter
-takes for the set. Poisson has its defaults; of open scans,
-SurfaceTrimmer cuts off what is sampled two levels more coarsely than half of its vertices. Each has
-one thread and one processor, from a file of points to a file of triangles. Ends with status 1 where
-a criterion does not hold.
+of built programs, PREFILTER_SELF_INTERSECTIONS of the one in bench/voxels. --options are keywords
+of `prefilter.reconstruct`, values as JSON. At depth 0 both use the depth that prefilter picks for
+the set. Poisson has its defaults; on open scans, SurfaceTrimmer cuts off the parts sampled two
+levels more coarsely than half of the vertices. Each has one thread and one processor, from a file
+of points to a file of triangles. Ends with status 1 where a criterion does not hold.
 """
 
 import argparse
@@ -35,7 +34,7 @@ from bench.scans.reconstruct import python
 OURS, POISSON = "ours", "poisson"
 TIME_BAR, MEMORY_BAR, CLEAN_BAR = 1 / 6, 1 / 2, 0.5
 TRIM_LEVELS = 2.0
-# What is asked to be at most Poisson's, and how much more is within the error of samples.
+# Measures that must not exceed Poisson's, with the excess that sampling error explains.
 BARS = {"folded": 0.0, "cut": 0.0, "lost": 0.02, "invented": 0.02, "high": 0.0, "degrees": 0.0}
 
 
@@ -53,7 +52,7 @@ class Prepared:
 
 @dataclass(frozen=True)
 class Row:
-    """What one program did with one set."""
+    """The measurements of one program on one set."""
 
     runs: list[Measurement]
     quality: dict[str, Any]
@@ -65,7 +64,7 @@ class Row:
 
     @property
     def memory(self) -> float:
-        """The most above what was there before [MiB]."""
+        """Peak memory beyond the memory at the start [MiB]."""
         return max(run.peak_mib - run.start_mib for run in self.runs)
 
 
@@ -122,7 +121,7 @@ def ours(options: argparse.Namespace, name: str, found: Prepared) -> Row:
 
 
 def theirs(options: argparse.Namespace, name: str, found: Prepared) -> Row:
-    """Runs Poisson, unless what it made is there."""
+    """Runs Poisson, unless its result exists."""
     folder = options.folder / POISSON
     folder.mkdir(parents=True, exist_ok=True)
     target = folder / f"{name}, {found.depth}.ply"

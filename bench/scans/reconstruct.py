@@ -9,8 +9,8 @@ FOLDER keeps the sets (see sets.py) and what every program made of them. Program
 are named and left out; PREFILTER_POISSONRECON is the path of a built PoissonRecon, and
 PREFILTER_OPEN3D_PYTHON and PREFILTER_MESHLAB_PYTHON are Pythons that can import open3d and
 pymeshlab, where ours cannot. Each program has one thread and one processor, and every round runs
-each once, from a file of points to a file of triangles; Python's imports are not counted. What is
-asked for is asked against the best Poisson there is in each measure. Ends with status 1 where a
+each once, from a file of points to a file of triangles; Python's imports are not counted. Criteria
+compare with the best Poisson program in each measure. Ends with status 1 where a
 criterion does not hold.
 """
 
@@ -61,7 +61,7 @@ MADE = "made"  # The folder of surfaces, in that of the sets.
 
 @dataclass(frozen=True)
 class Row:
-    """What one program did with one set."""
+    """The measurements of one program on one set."""
 
     runs: list[Measurement]
     quality: dict[str, Any]
@@ -114,7 +114,7 @@ def main() -> None:
 def compare(
     name: str, points: Path, programs: Sequence[str], options: argparse.Namespace
 ) -> dict[str, Row]:
-    """Runs all programs on a set, in turns, and measures what they made."""
+    """Runs all programs on a set, in turns, and measures their results."""
     made = options.folder / MADE
     made.mkdir(exist_ok=True)
     targets = {key: made / f"{name}, {key}, {options.depth}.ply" for key in programs}
@@ -201,7 +201,7 @@ def judge(report: Report, name: str, rows: dict[str, Row], depth: int) -> None:
 
 
 def judge_memory(report: Report, name: str, points: Path, depth: int) -> None:
-    """Measures what the library takes above points that are loaded already."""
+    """Measures the library's memory beyond points that are already loaded."""
     for key, bar in MEMORY_BARS.items():
         target = points.with_name("memory.ply")
         run = Wavelets(points, target, depth, OURS[key], name=key, in_memory=True).measure()
@@ -215,7 +215,7 @@ def judge_memory(report: Report, name: str, points: Path, depth: int) -> None:
 
 
 def judge_tilt(report: Report, name: str, folder: Path, depth: int) -> None:
-    """Compares the surface of turned normals with that of true ones (figure 4.5)."""
+    """Compares the surfaces from turned and from true normals (figure 4.5)."""
     turned = folder / f"{name}, {NOISY}, {depth}.ply"
     true = folder / f"{name.replace('tilted', '1m')}, {NOISY}, {depth}.ply"
     if not (turned.exists() and true.exists()):

@@ -39,7 +39,7 @@ def placed(path: Path, translation: Floats, quaternion: Floats) -> tuple[Floats,
 
 
 def rotation(quaternion: Floats) -> Floats:
-    """The matrix of a quaternion (x, y, z, w), turned the way that these files mean it."""
+    """The matrix of a quaternion (x, y, z, w), with the rotation direction of these files."""
     x, y, z, w = quaternion / np.linalg.norm(quaternion)
     return np.array(
         [

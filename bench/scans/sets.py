@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Makes the points that are reconstructed: samples of meshes, worn out in several ways, and scans.
+"""Makes the reconstructed points: samples of meshes with several kinds of degradation, and scans.
 
 Usage: python3 -m bench.scans.sets FOLDER [NAME...] [--shared FOLDER]
 
@@ -26,7 +26,7 @@ from bench.voxels.meshes import DATA, Triangles
 SHARED = DATA.parent
 MILLION = 1_000_000
 PIECE = MILLION
-DEPTH = 9  # Of the cells that noise is measured in.
+DEPTH = 9  # Depth of the cells that noise is measured in.
 NOISE = 0.5  # Cells, of each coordinate: one standard deviation.
 TILT = 60.0  # Degrees at the most.
 DENSITIES = 30.0
@@ -153,7 +153,7 @@ LARGE = {"igea_10m": 10 * MILLION, "igea_100m": 100 * MILLION}
 
 
 def names() -> list[str]:
-    """Returns the sets there are, but for the large ones."""
+    """Returns the available sets, without the large ones."""
     found = [f"{model}_1m" for model in MODELS]
     for model in ("igea", "armadillo"):
         found.append(f"{model}_4500k")
@@ -197,7 +197,7 @@ def make(name: str, target: Path, shared: Path = SHARED) -> None:
 
 
 def main() -> None:
-    """Makes what is missing."""
+    """Makes the missing sets."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("names", nargs="*", default=names())

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Draws surfaces side by side: a row a set, a column a folder of what one program made.
+"""Draws surfaces side by side: a row a set, a column per folder of results.
 
 Usage: python3 -m bench.scans.sheet TARGET.png FOLDER... [--sets NAME...] [--depth N] [--zoom X Y F]
 
@@ -21,7 +21,7 @@ from bench.scans import ply
 from bench.scans.sets import Model
 
 SIZE = 520  # Pixels of a picture.
-SAMPLES = 10  # Of a pixel, were the surface a square that fills the picture.
+SAMPLES = 10  # Per pixel, if the surface were a square that fills the picture.
 FRONT, BACK, PAPER = np.array([0.80, 0.81, 0.84]), np.array([0.86, 0.27, 0.22]), 1.0
 VIEW = (0.45, 0.35, 0.82)  # Toward the eye.
 UP = (0.0, 1.0, 0.0)
@@ -39,7 +39,7 @@ def frame_of(view: Sequence[float], up: Sequence[float]) -> Floats:
 
 
 def window(path: Path, frame: Floats, zoom: Sequence[float]) -> tuple[Floats, float]:
-    """Returns the middle of what is seen, and the half of its side."""
+    """Returns the center of the visible part, and half of its side."""
     placed = ply.read_mesh(path).positions @ frame.T
     low, high = np.percentile(placed, (0.1, 99.9), axis=0)[:, :2]
     half = (high - low).max() / 2 * 1.05
@@ -99,7 +99,7 @@ def write_png(path: Path, pixels: Floats) -> None:
 
 
 def main() -> None:
-    """Draws what all folders have."""
+    """Draws the sets that all folders have."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("target", type=Path)
     parser.add_argument("folders", type=Path, nargs="+")

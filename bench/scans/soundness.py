@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures what a surface of a scan has too much and too little, and whether it is sound.
+"""Measures missing and invented parts of a scan's surface, and whether it is sound.
 
 Usage: python3 -m bench.scans.soundness MESH.ply TRUTH|- CELL POINTS.ply [--samples N]
 
@@ -29,7 +29,7 @@ from bench.voxels.measures import edges, folds, self_intersections, sharp_edges
 from bench.voxels.meshes import Triangles
 
 SAMPLES = 200_000
-FAR = 3.0  # Cells: what is farther is lost, or invented.
+FAR = 3.0  # Cells: farther parts are lost, or invented.
 SPARSE = 3.0  # Spacings: as far may a surface be from the points of a real scan.
 NEIGHBOR = 4  # Whose distance is the spacing.
 FOLD = 90.0  # Degrees.
@@ -40,17 +40,16 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Soundness:
-    """What a surface is like.
+    """Properties and errors of a surface.
 
     Attributes:
-        triangles: How many there are.
-        folded: The share of edges that turn by more than 90 degrees, and are not those of the truth
-            [%].
+        triangles: Their number.
+        folded: The share of edges that turn by more than 90 degrees, except edges of the truth [%].
         cut: Triangles that cut others.
-        parts: Pieces that hang together.
-        genus: Of all pieces together; -1 where the surface is not closed.
-        lost: What is farther than `FAR` from the surface, of the truth or of the points [%].
-        invented: What is as far from the truth, or from points, of the surface [%].
+        parts: Connected parts.
+        genus: Of all parts together; -1 where the surface is not closed.
+        lost: The share of the truth or of the points farther than `FAR` from the surface [%].
+        invented: The share of the surface that far from the truth or from the points [%].
         mean: Distance of surface and truth, or of the points from the surface [cells].
         high: Its 99.9th percentile.
         degrees: The mean angle of normals of the surface, where it is near, to the true ones.
@@ -133,9 +132,9 @@ def beside_truth(
 def beside_points(
     surface: Triangles, cloud: tuple[Floats, Floats], samples: int
 ) -> tuple[Floats, Floats, Floats]:
-    """The same, for points and their normals.
+    """Returns the same for a cloud of points with normals as the truth.
 
-    What is nearer to the points than `SPARSE` of their spacings there counts as on them.
+    Surface samples nearer to the points than `SPARSE` of their local spacing count as on them.
     """
     points, normals = (np.asarray(part, np.float64) for part in cloud)
     model = Model.of(surface)

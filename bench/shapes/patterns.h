@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Test patterns of the section on rasterizing (2.3), rebuilt from what it says of them, and others.
+// Test patterns, some rebuilt from their description in the section on rasterizing (2.3).
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace prefilter::bench {
 
-/// What a path does next; the number of points that it takes is beside it.
+/// The next command of a path; `point_count` returns the number of points that it takes.
 enum class Verb : std::uint8_t { kMove = 0, kLine = 1, kQuadratic = 2, kCubic = 3, kClose = 4 };
 
 int point_count(Verb verb);
@@ -42,7 +42,7 @@ Pattern fan();
 /// Figure 2.6, first row: 32 radial triangles, 96 lines.
 Pattern star();
 /// Figure 2.6, second row: 32 rings around a corner, each of two quadratic curves outside, two
-/// inside and two radial lines. All rings have the same area, as those of a zone plate.
+/// inside and two radial lines. All rings have the same area, as in a zone plate.
 Pattern rings();
 /// 3390 letters o, each of two contours of four cubics: 27,120 cubics.
 Pattern glyphs();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What is measured, each behind one interface: our own rasterizer and others, one file a peer.
+// The measured rasterizers behind one interface: ours and others', one file each.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,13 @@ class Drawing {
  public:
   virtual ~Drawing() = default;
 
-  /// Makes the rasterizer's own path of the pattern as it is now, instead of the one there is.
+  /// Converts the current pattern to the rasterizer's own path, which replaces the earlier one.
   virtual void build() = 0;
-  /// Makes the image empty; not in the clock.
+  /// Clears the image; not timed.
   virtual void clear() = 0;
-  /// Draws the path over what the image holds.
+  /// Draws the path over the image's content.
   virtual void draw() = 0;
-  /// How much of each pixel the image has as covered, 0 to 1, rows from y = 0 on.
+  /// The image's coverage of each pixel, 0 to 1, rows from y = 0 on.
   virtual std::vector<float> coverage() const = 0;
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kDeviation = 1e-7;  // of curves from their chords [pixels]
 
-/// Each pixel holds by how much the coverage of it and of those after it in its row differs.
+/// Each pixel holds the step of coverage from it on along its row.
 class Differences {
  public:
   Differences(int width, int height)

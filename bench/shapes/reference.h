@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Coverage that errors are counted against: brute force in double precision, our library not in it.
+// Reference coverage by brute force in double precision, independent of our library.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace prefilter::bench {
 
-/// How much of each pixel the pattern covers. Curves are followed to 1e-7 pixels, so that no pixel
-/// is off by more than about that.
+/// The pattern's coverage of each pixel, with an error of about 1e-7: curves are followed to 1e-7
+/// pixels.
 std::vector<double> true_coverage(const Pattern& pattern);
 
 struct Errors {

@@ -6,10 +6,10 @@ Usage: python3 bench/shapes/resvg_references.py [FOLDER] (--help lists the optio
 
 FOLDER holds SVG files, each beside the PNG that resvg made of it. Each file is drawn by
 prefilter.rasterize_svg at the size of its PNG, with the fonts in the folder `fonts` beside FOLDER,
-as resvg's tests have them, or in that of --fonts. The difference is the mean over pixels and
-channels of premultiplied RGBA, in 1/255. Files in which something is found that is not supported
-are listed by themselves, and so are those that are refused. Ends with status 1 if fewer than 95 %
-of the others agree within 2/255, but for a few that resvg draws otherwise than SVG 2 has them.
+as in resvg's tests, or in the folder given by --fonts. The difference is the mean over pixels and
+channels of premultiplied RGBA, in 1/255. Files with unsupported features are listed by themselves,
+and so are refused files. Ends with status 1 if fewer than 95 % of the others agree within 2/255;
+a few that resvg draws otherwise than SVG 2 says do not count.
 """
 
 import argparse
@@ -38,12 +38,12 @@ class Compared:
     """A drawing beside its reference.
 
     Attributes:
-        path: Of the drawing.
-        difference: The mean absolute one, in 1/255.
-        worst: The largest of a pixel, in 1/255.
-        unsupported: What of it is not supported, in words.
+        path: The drawing's path.
+        difference: The mean absolute difference, in 1/255.
+        worst: The largest difference at a pixel, in 1/255.
+        unsupported: Its unsupported features, in words.
         ours: (height, width, 4), premultiplied, in 0..255, the top row first.
-        theirs: Likewise.
+        theirs: In the same form.
     """
 
     path: Path

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Drawings beside what Chromium and resvg make of them.
+"""Compares drawings with Chromium's and resvg's pictures.
 
 Usage: scripts/run python3 -m bench.vectors.beside_browser FOLDER (--help lists options)
 
@@ -43,10 +43,10 @@ class Compared:
     """A drawing beside both.
 
     Attributes:
-        name: Of the file, in its folder.
-        warnings: What ours says of what is not supported.
+        name: The file's path in its folder.
+        warnings: Our warnings about unsupported features.
         resvg: Ours beside resvg's, in 1/255; NaN where that has none.
-        browser: Ours beside Chromium's, likewise.
+        browser: Ours beside Chromium's, in the same form.
         others: resvg's beside Chromium's.
         sheet: All three on white, side by side; None for those that agree.
     """
@@ -66,7 +66,7 @@ class Compared:
 
 @dataclass
 class Drawn:
-    """What ours and resvg make of a drawing."""
+    """Our picture and resvg's picture of a drawing."""
 
     wanted: Wanted
     ours: Pixels

@@ -51,10 +51,10 @@ class Wanted:
     """A drawing to be shown.
 
     Attributes:
-        path: Of its file.
-        width: Of its picture, in pixels.
-        height: Likewise.
-        scale: How many of them a pixel of the drawing's own size becomes.
+        path: The file's path.
+        width: The picture's width, in pixels.
+        height: The picture's height, in pixels.
+        scale: Pixels of the picture per pixel of the drawing's own size.
     """
 
     path: Path

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Real drawings beside what resvg makes of them.
+"""Compares real drawings with resvg's pictures.
 
 Usage: scripts/run python3 -m bench.vectors.drawings FOLDER --resvg PROGRAM (--help lists options)
 
@@ -47,10 +47,10 @@ class Compared:
     """A drawing beside its reference.
 
     Attributes:
-        name: Of the file.
-        difference: The mean absolute one, in 1/255; None where there is no reference.
-        warnings: What ours says of it.
-        refused: What ours, or the reference, refused it with.
+        name: The file's name.
+        difference: The mean absolute difference, in 1/255; None where there is no reference.
+        warnings: Our warnings about it.
+        refused: The message with which our renderer or the reference refused it.
         sheet: Ours, theirs and the difference on white, side by side.
         seconds: Of the processor, for ours.
     """
@@ -93,7 +93,7 @@ def compared(path: Path, resvg: str, fonts: Path | None) -> Compared:
 
 
 def referred(path: Path, resvg: str, fonts: Path | None, columns: int) -> Pixels:
-    """Returns what resvg makes of a file, multiplied by alpha; ValueError where it does not."""
+    """Returns resvg's picture of a file, premultiplied; raises ValueError where it fails."""
     options = ["--width", str(columns)]
     if fonts:
         options += ["--skip-system-fonts", "--use-fonts-dir", str(fonts)]

@@ -4,10 +4,10 @@
 
 Usage: scripts/run python3 -m bench.vectors.fuzz [PATTERN...] [--count N] [--first SEED]
 
-Each drawing is made in a process of its own, which is stopped after a limit of processor time.
-Memory is what it takes beyond one that draws a box. What is refused by a ValueError, or a
-MemoryError that says how much it would take, has ended well. Ends with status 1 where one takes
-more, or fails otherwise; the seed makes it again.
+Each drawing is made in its own process, which is stopped after a limit of processor time. Memory
+counts beyond a process that draws a box. A refusal by a ValueError, or by a MemoryError that states
+the required memory, is a success. Ends with status 1 where a drawing takes more, or fails
+otherwise; the seed makes it again.
 """
 
 import argparse
@@ -183,7 +183,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=40, help="of each kind (default: %(default)s)")
     parser.add_argument("--first", type=int, default=0, help="seed (default: %(default)s)")
     options = parser.parse_args()
-    prefilter.rasterize_svg(drawing("paths", 0).encode(), SIDE, SIDE)  # imports what it needs
+    prefilter.rasterize_svg(drawing("paths", 0).encode(), SIDE, SIDE)  # imports its modules
     box = '<svg xmlns="http://www.w3.org/2000/svg"><rect width="9" height="9"/></svg>'
     measured(box)
     least = measured(box)[2]

@@ -5,10 +5,10 @@
 Usage: scripts/run python3 -m bench.vectors.hang [PATTERN...] [--limit SECONDS] [--json FILE]
 
 Each drawing is made in a process of its own at several counts, each twice the one before, up to the
-count that it is named by, and is stopped after --limit seconds of processor time. The exponent is
-that of the processor time from one count to the next, at the last two that ended. The time is that
-of rasterize; making the shapes in Python has a column of its own. Memory is what the process takes
-beyond one that draws a single triangle. Ends with status 1 where a criterion does not hold.
+count in its name, and is stopped after --limit seconds of processor time. The exponent compares the
+processor times of the last two counts that ended. The time is of rasterize alone; making the
+shapes in Python has a column of its own. Memory counts beyond a process that draws a single
+triangle. Ends with status 1 where a criterion does not hold.
 """
 
 import argparse
@@ -29,14 +29,14 @@ from bench.report import Report, add_json_option
 SIDE = 1024
 MOST_SECONDS = 2.0
 MOST_MIB = 200.0
-MOST_EXPONENT = 1.25  # of n log n, and of what a timer is off by
+MOST_EXPONENT = 1.25  # allows for n log n, and for the timer's error
 Floats = NDArray[np.float64]
 Shapes = list[prefilter.Shape]
 
 
 @dataclass(frozen=True)
 class Case:
-    """A drawing by the count of what it consists of."""
+    """A kind of drawing, with the counts of elements to draw."""
 
     make: Callable[[int, np.random.Generator], Shapes]
     counts: tuple[int, ...]
@@ -76,7 +76,7 @@ def blobs(count: int, random: np.random.Generator) -> Shapes:
 
 
 def far_blobs(count: int, random: np.random.Generator) -> Shapes:
-    """The same, as far from each other as they are large."""
+    """Blobs as far from each other as they are large."""
     colors = 0.1 * random.random((count, 3))
     return [
         curved(blob(random, r, 8.0), (*color, 0.1))
@@ -150,12 +150,12 @@ def scribble(count: int, random: np.random.Generator, width: float = 3.0) -> Sha
 
 
 def wide_scribble(count: int, random: np.random.Generator) -> Shapes:
-    """The same with a pen as wide as the image."""
+    """The same lines with a pen as wide as the image."""
     return scribble(count, random, SIDE)
 
 
 def equal_triangles(count: int, random: np.random.Generator) -> Shapes:
-    """The same translucent triangle again and again."""
+    """Copies of one translucent triangle."""
     points = random.random((3, 2)) * SIDE
     return [shape([points], color=(0.1, 0.0, 0.0, 0.1)) for _ in range(count)]
 
@@ -198,7 +198,7 @@ def processor_seconds() -> float:
 
 
 def draw(name: str, count: int) -> None:
-    """Draws one, and prints what it took; a count of 0 is a triangle alone."""
+    """Draws a case, and prints its time and memory; a count of 0 is a triangle alone."""
     before = processor_seconds()
     case = CASES[name]
     random = np.random.default_rng(31)
@@ -214,7 +214,7 @@ def draw(name: str, count: int) -> None:
 
 
 def measured(name: str, count: int, limit: float) -> dict[str, float] | None:
-    """Returns what drawing one takes in a process of its own; None for more than the limit."""
+    """Returns the cost of a drawing in its own process; None for more than the limit."""
     bound = math.ceil(limit)
     code = f"from bench.vectors import hang; hang.draw({name!r}, {count})"
     done = subprocess.run(

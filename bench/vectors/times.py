@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images of bytes from Python, beside Skia's; what overlaps, other filters and reading cost.
+"""Times images of bytes from Python, beside Skia: overlaps, other filters and reading.
 
 Usage: scripts/run python3 -m bench.vectors.times [DRAWING...] [--rounds N] [--skia FOLDER]
     [--json FILE]
 
-Each drawing has its paths made before, by both; what is timed is a call that returns a new array of
-bytes. All run on one thread, in turns, and processor time counts. The criteria are shares of
-Skia's time; of the time where nothing is known to overlap; of that of the box filter; and of what
-drawing takes.
+Both build the paths of a drawing beforehand; the timed call returns a new array of bytes. All run
+on one thread, in turns, and processor time counts. The criteria are shares of Skia's time, of the
+time where nothing is known to overlap, of the box filter's time, and of the drawing's time.
 """
 
 import argparse
@@ -34,7 +33,7 @@ SVG = Path(__file__).resolve().parents[3] / "shared/data/svg"
 FONT = SVG / "fonts/NotoSans-Regular.ttf"
 QUARTER = math.sqrt(0.5)
 LETTERS = {"M": 1, "L": 1, "Q": 2, "W": 2, "C": 3, "Z": 0}
-LEAST_SECONDS = 0.02  # of what is timed at once
+LEAST_SECONDS = 0.02  # per timed batch
 ICON_MICROSECONDS = 50.0
 SKIA_BARS = {
     "strokes": 1.5, "radial gradients": 1.5, "linear gradients": 1.5, "map": 1.5, "text": 1.0,
@@ -59,7 +58,7 @@ class Gradient:
 
 @dataclass(frozen=True)
 class Filled:
-    """What is filled: letters and numbers as `Shape.add_path` takes them, and how."""
+    """A filled path: letters and numbers as `Shape.add_path` takes them, and the paint."""
 
     letters: str
     numbers: Floats
@@ -257,7 +256,7 @@ def rings(_: np.random.Generator) -> Drawing:
     for k in range(1, 65):
         letters, numbers = disc(256.0, 256.0, 3.9 * k)
         if k % 2 == 1:
-            # The same the other way round: rings.
+            # Reversed, so that rings remain.
             points = np.asarray([(y, x) for x, y in _pairs(numbers)])
             numbers = _conics(points)
         parts.append((letters, np.asarray(numbers)))
@@ -303,7 +302,7 @@ def ours(drawing: Drawing, **options: Any) -> Callable[[], object]:
 
 
 def strokes_of_ours(drawing: Drawing) -> Callable[[], object]:
-    """The same, where strokes are made by the call, as Skia makes them."""
+    """Returns our timed call with stroking included, as in Skia."""
     lines = our_shapes(Drawing([replace(path, width=0.0) for path in drawing.paths], drawing.side))
     widths = [path.width for path in drawing.paths]
     side = drawing.side
@@ -396,7 +395,7 @@ def markup(drawing: Drawing) -> str:
 
 
 def compare_reading(report: Report, rounds: int) -> None:
-    """What reading a drawing takes, and what drawing it then does."""
+    """Reports the times of reading a drawing and of drawing it."""
     rows = []
     claims = []
     sources: dict[str, str | Path] = {

@@ -16,7 +16,7 @@ OPERATORS = {"union": "__add__", "intersection": "__xor__", "difference": "__sub
 
 
 def missing() -> str:
-    """Returns what is needed and is not there; nothing where all is."""
+    """Returns the missing requirement; empty if there is none."""
     return "" if importlib.util.find_spec("manifold3d") else "manifold3d (PyPI)"
 
 

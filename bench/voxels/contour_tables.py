@@ -4,8 +4,8 @@
 
 scripts/run python3 bench/voxels/contour_tables.py [--planes N] [--spheres N] [--json FILE]
 
-Occupancies come from closed forms and quadrature, not from the library. What a contour encloses of
-a cell is measured by voxelizing it; that voxelize is exact is the business of its own tests.
+Occupancies come from closed forms and quadrature, not from the library. Voxelizing a contour gives
+the volume that it encloses in a cell; the exactness of voxelize has its own tests.
 """
 
 import argparse
@@ -25,7 +25,7 @@ ON_SPHERE = "on the sphere"
 
 
 def plane_occupancies(n: int, normal: np.ndarray, offset: float) -> np.ndarray:
-    """Of n^3 unit cells: the share where normal . p <= offset, by inclusion and exclusion."""
+    """Shares of n^3 unit cells with normal . p <= offset, by inclusion-exclusion."""
     cells = np.indices((n, n, n)).reshape(3, -1).T.astype(float)
     size = np.abs(normal)
     rest = offset - (cells + np.where(normal > 0, 0, 1)) @ normal
@@ -40,7 +40,7 @@ def plane_occupancies(n: int, normal: np.ndarray, offset: float) -> np.ndarray:
 
 
 def sphere_occupancies(n: int, center: np.ndarray, radius: float, columns: int = 32) -> np.ndarray:
-    """Of n^3 unit cells: the share within the sphere, by columns along the axis it faces most."""
+    """Shares of n^3 unit cells in the sphere, by columns along the axis it faces most."""
     middles = np.indices((n, n, n)).reshape(3, -1).T + 0.5 - center
     distance = np.linalg.norm(middles, axis=1)
     shares = (distance < radius).astype(float)
@@ -64,7 +64,7 @@ def sphere_occupancies(n: int, center: np.ndarray, radius: float, columns: int =
 
 @dataclass
 class PlaneErrors:
-    """Of cells that a plane cuts: the volume in the contour less that under the plane."""
+    """In cells that a plane cuts: the volume in the contour minus the volume under the plane."""
 
     mean: float
     deviation: float

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Times sharp contours with Clean Up against those of "plane" without, on the same octree.
+"""Times sharp contours with Clean Up against "plane" contours without, on the same octree.
 
 Usage: scripts/run python3 bench/voxels/contour_times.py [--depths N...] [--rounds N] [--threads N]
 
 The criterion: sharp and Clean Up together take at most 1.5 times as long. Each round takes every
-contour once, so that what else runs on the machine slows all; times are medians of wall time, the
-ratio is that of pairs in one round.
+contour once, so that other work on the machine slows all; times are medians of wall time, and the
+ratio is over pairs in one round.
 """
 
 import argparse

@@ -8,7 +8,7 @@ Usage: scripts/run python3 bench/voxels/corpus.py [--depth N] [--interpolants NA
 
 Meshes are those gathered beside the checkout and made ones. Volumes are compared with manifold3d's
 (PyPI) where that takes both operands and neither passes through itself, and may differ by 0.1 of a
-cell times the area. What is wrong is printed at once, with the triangles of a pair that cuts.
+cell times the area. Faults are printed at once, with the triangles of an intersecting pair.
 """
 
 import argparse
@@ -25,7 +25,7 @@ from bench.voxels.sharp_shapes import Shape
 
 TEXTURED = meshes.DATA.parent / "textured"
 OPERATIONS = ("union", "intersection", "difference")
-VOLUME_BAR = 0.1  # Of a cell times the area.
+VOLUME_BAR = 0.1  # Cells times the area.
 
 
 def fitted(name: str, positions: np.ndarray, triangles: np.ndarray) -> Shape:
@@ -112,7 +112,7 @@ class Boolean:
 
 
 def random_booleans(count: int, solids: list[Shape]) -> list[Boolean]:
-    """Of shapes that overlap, at random places and turns."""
+    """Booleans of overlapping shapes at random positions and rotations."""
     random = np.random.default_rng(15)
     found = []
     for k in range(count):
@@ -128,7 +128,7 @@ def random_booleans(count: int, solids: list[Shape]) -> list[Boolean]:
 
 
 def volume(positions: np.ndarray, triangles: np.ndarray) -> float:
-    """What a closed surface holds."""
+    """The enclosed volume of a closed surface."""
     a, b, c = np.moveaxis(positions[triangles], 1, 0)
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
@@ -141,7 +141,7 @@ def is_closed(shape: Shape) -> bool:
 
 @dataclass
 class Tally:
-    """What came of many meshes."""
+    """Counts of the results of many meshes."""
 
     done: int = 0
     unsound: int = 0
@@ -150,7 +150,7 @@ class Tally:
     seconds: float = 0.0
 
     def add(self, name: str, found: measures.Soundness, seconds: float) -> None:
-        """Counts one result, and prints what is wrong with it."""
+        """Counts one result, and prints its faults."""
         self.done += 1
         self.seconds += seconds
         self.unsound += not found.is_manifold

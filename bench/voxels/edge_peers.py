@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The measures of edges.py of what others make: Blender's Remesh, and its EXACT boolean.
+"""Takes the measures of edges.py of Blender's Remesh and of its EXACT boolean.
 
 Usage: scripts/run python3 bench/voxels/edge_peers.py [--shapes NAME...] [--pairs NAME+NAME...]
     [--sizes N...] [--keep FOLDER]
@@ -34,7 +34,7 @@ def saved(folder: Path, shape: Shape, name: str) -> str:
 def jobs_of(
     folder: Path, subject: edges.Subject, size: int
 ) -> list[tuple[str, blender_meshes.Job]]:
-    """What Blender has to do with a subject, by name."""
+    """Returns Blender's jobs for a subject, by name."""
     name = subject.name.replace(" ", "_")
     _, cell = edges.box_around(subject.sources, size)
     sources = tuple(

@@ -7,8 +7,8 @@ Usage: scripts/run python3 bench/voxels/edges.py [--shapes NAME...] [--pairs NAM
 
 sharp gets the shapes as its sources, sharp-alone does not.
 
-The columns: how far true edges are from the surface and from its sharp edges, mean and 95th
-percentile, and the farthest; the farthest that a corner is from a vertex; the share of the area
+The columns: distances of true edges from the surface and from its sharp edges, mean, 95th
+percentile and largest; the largest distance of a corner from a vertex; the share of the area
 more than 10 degrees off; two cells from edges, the mean error of normals in degrees and the
 vertices' root mean square distance; open and crowded edges; pairs of triangles that cut each other;
 the share of triangles with an angle below 15 degrees; triangles; seconds. Lengths are in cells.
@@ -61,7 +61,7 @@ EDGE_MEAN, EDGE_95, AREA = 0.02, 0.1, 0.001
 
 @dataclass(frozen=True)
 class Subject:
-    """What is voxelized, and what is true of the surface."""
+    """The voxelized meshes, and the true surface with its edges."""
 
     name: str
     sources: tuple[Shape, ...]
@@ -72,7 +72,7 @@ class Subject:
 
 @dataclass(frozen=True)
 class Contour:
-    """How a surface is made."""
+    """The options of a contour."""
 
     interpolant: str
     alone: bool  # without sources
@@ -84,7 +84,7 @@ class Contour:
         """Reads NAME[-alone][+clean][@ADAPTIVITY].
 
         Raises:
-            ValueError: It is not written so.
+            ValueError: It has another form.
         """
         found = re.fullmatch(r"([a-z]+)(-alone)?(\+clean)?(?:@([0-9.]+))?", text)
         if not found:
@@ -93,7 +93,7 @@ class Contour:
 
     @property
     def name(self) -> str:
-        """As it is written on the command line."""
+        """The name as written on the command line."""
         end = f"@{self.adaptivity:g}" if self.adaptivity else ""
         alone = "-alone" if self.alone else ""
         return f"{self.interpolant}{alone}{'+clean' if self.cleanup else ''}{end}"
@@ -171,7 +171,7 @@ class Result:
 def measured(
     subject: Subject, positions: np.ndarray, triangles: np.ndarray, cell: float, seconds: float
 ) -> Result:
-    """Measures a surface, whoever made it."""
+    """Measures a surface of any program."""
     truth = subject.truth
     return Result(
         measures.edge_errors(positions, triangles, subject.edges, cell),
@@ -186,7 +186,7 @@ def measured(
 
 
 def subjects_of(options: argparse.Namespace) -> list[Subject]:
-    """The shapes and booleans that are asked for and can be had."""
+    """The requested shapes and booleans that are available."""
     found = []
     for name in options.shapes:
         try:
@@ -211,7 +211,7 @@ def subjects_of(options: argparse.Namespace) -> list[Subject]:
 def boolean(first: str, second: str, operation: str, number: int = 0) -> Subject:
     """Two shapes combined; its edges are the rims, where faces of both meet.
 
-    Without those of wedges of less than 40 degrees, whose tips leave cells mostly empty.
+    Rims of wedges below 40 degrees are left out: their tips leave cells mostly empty.
     """
     sources = sharp_shapes.pair(first, second, number)
     truth, rims = booleans.combined(sources, operation)
@@ -221,7 +221,7 @@ def boolean(first: str, second: str, operation: str, number: int = 0) -> Subject
 
 
 def add_subjects(parser: argparse.ArgumentParser) -> None:
-    """Adds the options that say what is measured."""
+    """Adds the options that select the measurements."""
     pairs = ", ".join("+".join(pair[:2]) for pair in sharp_shapes.PAIRS)
     parser.add_argument("--shapes", nargs="*", default=list(sharp_shapes.MAKERS))
     parser.add_argument("--pairs", nargs="*", default=[], help=f"'all', or of {pairs}")
@@ -263,7 +263,7 @@ def main() -> None:
 
 
 def judge(report: Report, name: str, found: Result) -> None:
-    """Compares with the bars."""
+    """Judges the measures by the bars."""
     edge = found.edges
     mean, high = (
         max(edge.surface_mean, edge.crease_mean),

@@ -5,19 +5,19 @@
 Usage: scripts/run python3 bench/voxels/gathered.py FOLDER [--depth N] [--interpolant NAME]
     [--only TEXT] [--limit SECONDS] [--jobs N] [--keep FOLDER] [--json FILE]
 
-Meshes are read by trimesh (PyPI): STL, OBJ, PLY, OFF and glTF, of any kind, sound or broken; those
-of each folder in FOLDER are a kind. Each is made a solid, voxelized with the minimum thickness,
+Meshes are read by trimesh (PyPI): STL, OBJ, PLY, OFF and glTF, sound or broken; each
+folder in FOLDER is a kind of meshes. Each is made a solid, voxelized with the minimum thickness,
 contoured and cleaned up with the add-on's defaults, in a process of its own that has --limit
 seconds. Judges are CGAL's exact predicates (the program of self_intersections.cpp) and libigl
 (PyPI): squared distances, and generalized winding numbers. Lengths are in cells.
 
 The columns of a mesh: triangles of the mesh; triangles of the result; open, crowded and pinched
-places; pairs of triangles that cut each other; folds, edges that turn by over 120 degrees, but for
-wedges; strays, folds with a triangle that does not lie along what is voxelized, by 0.1 of a cell
-and 20 degrees; wedges, such edges within a quarter of a cell of one by which what is voxelized
-turns as far itself, to the same side, as where a cap or another part meets the mesh at an acute
-angle; those of them at caps of holes; how far samples of the result are from the mesh, median, 95th
-percentile and farthest; the share of the mesh, in percent, that is more than a cell from the result
+places; pairs of triangles that cut each other; folds, edges that turn by over 120 degrees, except
+wedges; strays, folds with a triangle that does not lie along the source, by 0.1 of a cell and 20
+degrees; wedges, such edges within a quarter of a cell of a source edge that turns as far itself,
+to the same side, as where a cap or another part meets the mesh at an acute
+angle; wedges at caps of holes; distances of samples of the result from the mesh, median, 95th
+percentile and largest; the share of the mesh, in percent, that is more than a cell from the result
 and outside of it; parts and genus of the result, and of the mesh where it is closed; processor
 seconds. Totals count meshes; distances and seconds in them are medians over meshes, and the most
 seconds.
@@ -41,10 +41,10 @@ from bench.voxels import measures, wedges
 
 ENDINGS = (".stl", ".obj", ".ply", ".off", ".glb")
 SAMPLES = 20_000
-GAP, THICKNESS = 2.0, 1.5  # As the add-on has them.
+GAP, THICKNESS = 2.0, 1.5  # The add-on's defaults.
 ALONG = 0.1  # Cells,
 ALONG_DEGREES = 20.0  # and degrees.
-MISSING = 1.0  # Of a cell: what is farther from the result, and outside of it, is missing.
+MISSING = 1.0  # Cells: parts farther outside the result are missing.
 HEAD = (
     "mesh",
     "triangles",
@@ -97,7 +97,8 @@ def voxelized(
 ) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray, int], float, float]:
     """Returns the surface that the add-on makes, the cell, and processor seconds.
 
-    Before the cell, of what: positions and triangles, and how many of these are no caps of holes.
+    Before the cell come the source's positions and triangles, and the number of these that are no
+    caps of holes.
     """
     import prefilter
 
@@ -133,7 +134,7 @@ def missing(
 
 
 def distances(points: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """How far points are from a surface."""
+    """Distances of points from a surface."""
     import igl
 
     return np.sqrt(
@@ -144,7 +145,7 @@ def distances(points: np.ndarray, positions: np.ndarray, triangles: np.ndarray) 
 def at_caps(
     made: np.ndarray, pairs: np.ndarray, positions: np.ndarray, triangles: np.ndarray, uncapped: int
 ) -> int:
-    """How many pairs (n, 2, 3) of triangles have one that is nearest to a cap."""
+    """Counts pairs (n, 2, 3) of triangles, one of which is nearest to a cap."""
     import igl
 
     if not len(pairs):
@@ -157,7 +158,7 @@ def at_caps(
 def strays(
     made: np.ndarray, pairs: np.ndarray, positions: np.ndarray, triangles: np.ndarray, cell: float
 ) -> int:
-    """How many pairs (n, 2, 3) of triangles do not both lie along a mesh."""
+    """Counts pairs (n, 2, 3) of triangles that do not both lie along a mesh."""
     import igl
 
     if not len(pairs):
@@ -178,7 +179,7 @@ def strays(
 
 
 def measured(path: Path, depth: int, interpolant: str) -> dict[str, object]:
-    """What is found of one mesh."""
+    """Returns the measurements of one mesh."""
     positions, triangles = read(path)
     found: dict[str, object] = {"triangles": len(triangles)}
     used = positions[np.unique(triangles)]
@@ -210,7 +211,7 @@ def measured(path: Path, depth: int, interpolant: str) -> dict[str, object]:
 
 
 def of_another_process(path: Path, options: argparse.Namespace) -> dict[str, object] | str:
-    """What is found of one mesh, or was and is kept; or why there is nothing."""
+    """Returns the measurements of one mesh, kept or new, or the reason for their absence."""
     kept = options.keep and options.keep / f"{path.parent.name} {path.name}.json"
     if kept and kept.exists():
         return json.loads(kept.read_text())
@@ -224,7 +225,7 @@ def of_another_process(path: Path, options: argparse.Namespace) -> dict[str, obj
         return f"not done in {options.limit:g} s"
     if done.returncode:
         return (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
-    # Readers of files print, too.
+    # File readers print, too.
     line = done.stdout.splitlines()[-1]
     if kept:
         kept.write_text(line)
@@ -292,7 +293,7 @@ def main() -> None:
     parser.add_argument("--only", default="", help="part of the names")
     parser.add_argument("--limit", type=float, default=120.0, help="seconds that a mesh has")
     parser.add_argument("--jobs", type=int, default=1, help="meshes at a time")
-    parser.add_argument("--keep", type=Path, help="folder of what is found, for a run cut off")
+    parser.add_argument("--keep", type=Path, help="folder that keeps results, to resume a run")
     parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
     add_json_option(parser)
     options = parser.parse_args()

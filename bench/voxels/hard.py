@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures what as_solid makes of hard meshes: how much of them is kept, and at what cost.
+"""Measures as_solid on hard meshes: the preserved share of their surface, and the cost.
 
 Usage: scripts/run python3 bench/voxels/hard.py [NAME...] [--cells N] [--json FILE]
            [--alpha-wrap PROGRAM]
 
-Of each mesh: the share of its surface within 3 cells of the contour, before (as voxelize takes the
-mesh with its holes closed) and after as_solid; the volume over that of the solid it stands for; the
-CPU time of as_solid, close_holes and voxelize together, and that of CGAL's alpha wrap with the
-program that bench/peers/alpha_wrap.cpp makes, where it is given. Models that are not there are left
-out.
+Columns per mesh: the share of its surface within 3 cells of the contour, before (as voxelize takes
+the mesh with its holes closed) and after as_solid; the volume as a share of the true one;
+the CPU time of as_solid, close_holes and voxelize together, and of CGAL's alpha wrap by the program
+built from bench/peers/alpha_wrap.cpp, if given. Missing models are left out.
 """
 
 import argparse
@@ -35,7 +34,7 @@ SAMPLES = 20_000
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a mesh.
+    """The result for a mesh.
 
     Attributes:
         kept: The share of its surface near the contour; 0 where there is none.
@@ -69,7 +68,7 @@ def samples(mesh: HardMesh, count: int = SAMPLES) -> np.ndarray:
 
 
 def kept_share(mesh: HardMesh, positions: np.ndarray, triangles: np.ndarray, near: float) -> float:
-    """Of the surface of a mesh, what is as near to another one."""
+    """Returns the share of a mesh's surface within `near` of another mesh."""
     if len(triangles) == 0:
         return 0.0
     _, _, distances = prefilter.nearest_points(samples(mesh), positions, triangles)
@@ -77,7 +76,7 @@ def kept_share(mesh: HardMesh, positions: np.ndarray, triangles: np.ndarray, nea
 
 
 def outcome(mesh: HardMesh, cell: float, mends: bool) -> Outcome:
-    """Voxelizes, with as_solid or as it is."""
+    """Voxelizes, with as_solid or without."""
     start = cpu_seconds()
     positions, triangles = mesh.positions, mesh.triangles
     report = ""

@@ -2,7 +2,7 @@
 
 """Meshes that are no solids: open, unoriented, in pieces, without thickness.
 
-With numpy alone. `hard_meshes()` has those that are made; `read_meshes(folder)` those among the
+Needs numpy alone. `hard_meshes()` has the generated ones; `read_meshes(folder)` those among the
 models that are gathered beside the checkout.
 """
 
@@ -22,12 +22,12 @@ Indices = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class HardMesh:
-    """A mesh, about 2 units large if it is made, and the volume of what it stands for.
+    """A mesh, about 2 units large if generated, and the volume of the solid that it represents.
 
     Attributes:
         positions: (vertices, 3).
         triangles: (triangles, 3).
-        volume: Of the solid that anyone would see in it; None for sheets and what is in doubt.
+        volume: The volume of the evident solid; None for sheets and doubtful meshes.
     """
 
     positions: Array
@@ -41,7 +41,7 @@ def closed(solid: solids.Solid) -> HardMesh:
 
 
 def sphere(rounds: int = 5, radius: float = 1.0, center: tuple[float, ...] = (0, 0, 0)) -> HardMesh:
-    """As it is made by splitting an octahedron."""
+    """A sphere, by splitting an octahedron."""
     return closed(solids.sphere(radius, rounds, center))
 
 
@@ -62,7 +62,7 @@ def grid(place: Callable[[Array, Array], Array], columns: int, rows: int) -> Har
 
 
 def welded(mesh: HardMesh, digits: int = 9) -> HardMesh:
-    """Vertices that are the same but for rounding made one."""
+    """Merges vertices that are equal up to rounding."""
     _, first, names = np.unique(
         np.round(mesh.positions, digits) + 0.0, axis=0, return_index=True, return_inverse=True
     )
@@ -285,7 +285,7 @@ def house() -> HardMesh:
 
 
 def hard_meshes() -> dict[str, HardMesh]:
-    """Those that are made, by name."""
+    """Returns the generated meshes, by name."""
     whole, inner, ring, cube = sphere(), sphere(4, 0.5), torus(), box()
     twice = np.concatenate([whole.triangles, whole.triangles])
     both_ways = np.concatenate([whole.triangles, whole.triangles[:, ::-1]])
@@ -336,7 +336,7 @@ def hard_meshes() -> dict[str, HardMesh]:
 
 
 def read_meshes(folder: Path = meshes.DATA) -> Iterator[tuple[str, HardMesh]]:
-    """Those of the models in a folder that are open, broken, or pass through themselves."""
+    """Yields the models in a folder that are open, broken, or pass through themselves."""
     for name in (
         "broken_many_small_holes.ply",
         "broken_non_manif_hole.ply",

@@ -4,10 +4,10 @@
 
 Usage: scripts/run python3 bench/voxels/holes.py [--json FILE] [--fill-holes PROGRAM]
 
-Of each hole and method: how far the patch is from the surface that had been there, on average and
-at most; the angle between triangles on either side of the border, at the 95th percentile; the error
+Columns per hole and method: distances of the patch from the original surface, mean and
+largest; the angle between triangles on either side of the border, at the 95th percentile; the error
 of the volume; triangles, and CPU time on one thread, with the search for the borders.
-`--fill-holes` is the program that bench/peers/fill_holes.cpp makes.
+`--fill-holes` is the program built from bench/peers/fill_holes.cpp.
 """
 
 import argparse
@@ -36,7 +36,7 @@ METHODS = ("smooth", "flat", "fan")
 
 @dataclass(frozen=True)
 class Hole:
-    """A mesh with a hole, what it had been, and how far points are from that."""
+    """A mesh with a hole, its original volume, and the distance of points from the original."""
 
     name: str
     positions: Floats
@@ -83,7 +83,7 @@ class Patch:
 
 
 def ours(hole: Hole, method: str) -> Patch:
-    """By close_holes; the fastest of three times."""
+    """Closes a hole by close_holes; the fastest of three times."""
     times = []
     for _ in range(3):
         began = resource.getrusage(resource.RUSAGE_SELF)
@@ -94,7 +94,7 @@ def ours(hole: Hole, method: str) -> Patch:
 
 
 def cgal(hole: Hole, program: Path) -> Patch:
-    """By CGAL; files are not counted."""
+    """Closes a hole by CGAL; the time for files is not counted."""
     with tempfile.TemporaryDirectory() as folder:
         source, target = Path(folder, "in.off"), Path(folder, "out.off")
         used, triangles = np.unique(hole.triangles, return_inverse=True)

@@ -19,7 +19,7 @@ from .nearest import Nearest
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 SPACING = 0.25  # Between samples of an edge.
-SAMPLES = 60_000  # Of a surface.
+SAMPLES = 60_000  # Per surface.
 SLACK = 0.01  # Faces that are that much farther than the nearest one are adjacent to the edge.
 WRONG_DEGREES = 10.0
 FOLD = 120.0  # Degrees.
@@ -36,10 +36,10 @@ class Edges:
 
 @dataclass(frozen=True)
 class EdgeErrors:
-    """How far samples of the true edges are from the surface, and from its sharp edges.
+    """Distances of samples of the true edges from the surface, and from its sharp edges.
 
-    Sharp is an edge of the result that turns by more than half of what the true one does. Corners
-    are ends of true edges; `corner` is how far the farthest is from a vertex of the result.
+    An edge of the result is sharp if it turns by more than half of the true edge's turn. Corners
+    are ends of true edges; `corner` is their largest distance from a vertex of the result.
     """
 
     surface_mean: float
@@ -57,7 +57,7 @@ class EdgeErrors:
 
 @dataclass(frozen=True)
 class SurfaceErrors:
-    """Shares of the area; and, of what is farther than two cells from edges, vertices and normals.
+    """Shares of the area, and, farther than two cells from edges, vertex and normal errors.
 
     `wrong` is the share of the area more than 10 degrees off the true surface where it is nearest;
     where that is at an edge, off the better one of its faces.
@@ -71,7 +71,7 @@ class SurfaceErrors:
 
 @dataclass(frozen=True)
 class Soundness:
-    """What keeps a mesh from being a closed two-manifold surface without self-intersections.
+    """Defects of a mesh as a closed two-manifold surface without self-intersections.
 
     `intersections` counts pairs of triangles; it is -1 where the program that counts is missing.
     """
@@ -145,8 +145,8 @@ def folded_pairs(
 ) -> Indices:
     """The pairs of triangles (n, 2) at edges that turn by more than so many degrees.
 
-    With `true_edges`, without those that are at edges of the shape, within `reach`, that turn by at
-    least so much less 20 degrees: a wedge is no fold.
+    Given `true_edges`, pairs within `reach` of an edge of the shape that turns by at least that
+    angle less 20 degrees are left out: a wedge is no fold.
     """
     ends, pairs, turn = edges(positions, triangles)
     folded = turn > degrees
@@ -231,7 +231,7 @@ def edge_errors(positions: Floats, triangles: Indices, truth: Edges, cell: float
 
 
 def weighted_quantile(values: Floats, weights: Floats, share: float) -> float:
-    """The value below which that share of the weights is."""
+    """Returns the quantile of values with weights: the value at that share of their sum."""
     order = np.argsort(values)
     below = np.cumsum(weights[order])
     return float(values[order][np.searchsorted(below, share * below[-1])])
@@ -289,7 +289,7 @@ def degrees_off(
     cell: float,
     samples: int = SAMPLES,
 ) -> Floats:
-    """Of samples of a surface, the angles between its normal and the true one that is nearest."""
+    """Angles at samples of a surface between its normal and the nearest true one."""
     return _samples_off(positions, triangles, true_positions, true_triangles, cell, samples)[1]
 
 

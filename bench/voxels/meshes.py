@@ -2,7 +2,7 @@
 
 """Reads the triangles of the OBJ and PLY files that are gathered beside the checkout.
 
-With numpy alone, so that nothing else is in the memory that is measured.
+Needs numpy alone, so that nothing else counts in the measured memory.
 """
 
 import base64

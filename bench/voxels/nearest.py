@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Nearest points of triangles and of segments, with nothing of the library."""
+"""Nearest points of triangles and of segments, independent of the library."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class Pairs:
-    """Queries and what may be nearest to them; `squared` is the distance between the two."""
+    """Queries and candidates for their nearest items, with `squared` distances."""
 
     queries: Indices
     items: Indices
@@ -29,7 +29,7 @@ class Nearest:
     """A tree of boxes around triangles, (n, 3, 3), or segments, (n, 2, 3)."""
 
     def __init__(self, corners: Floats) -> None:
-        """Sorts them along a Morton curve; there has to be one at least."""
+        """Sorts the items along a Morton curve; there has to be at least one."""
         from scipy.spatial import cKDTree
 
         self._corners = np.asarray(corners, np.float64)
@@ -42,7 +42,7 @@ class Nearest:
             leaves *= 2
         self._leaves = leaves
         order = _morton_order(parts.mean(axis=1))
-        # The last is repeated, so that all leaves are full.
+        # The last item is repeated, so that all leaves are full.
         filled = np.minimum(np.arange(leaves * LEAF), count - 1)
         order = order[filled]
         self._items = owners[order].reshape(leaves, LEAF)
@@ -78,7 +78,7 @@ class Nearest:
             yield first, Pairs(pairs.queries[kept], pairs.items[kept], pairs.squared[kept])
 
     def _near(self, points: Floats, slack: float) -> tuple[Indices, Indices]:
-        # Of a part near by: its item is not far beyond the nearest one.
+        # The item of a nearby part bounds the distance of the nearest item.
         _, parts = self._middles.query(points)
         items = self._owners[parts]
         most = self._measure(points, *np.moveaxis(self._corners[items], 1, 0))
@@ -132,7 +132,7 @@ def _to_boxes(points: Floats, lows: Floats, highs: Floats) -> Floats:
 
 
 def _short(corners: Floats) -> tuple[Floats, Indices]:
-    """Halves long items at their longest side; returns the parts, and what each is a part of."""
+    """Halves long items at their longest side; returns the parts, and the item of each."""
     owners = np.arange(len(corners))
     limit = np.ptp(corners.reshape(-1, 3), axis=0).max() / PARTS
     done, done_owners = [], []

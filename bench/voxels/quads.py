@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares quads with those of Blender's Voxel Remesh: how even they are, and how close.
+"""Compares quads with Blender's Voxel Remesh: their evenness, and their distance to the source.
 
 Usage: scripts/run python3 bench/voxels/quads.py [--depth N] [--shapes NAME...] [--json FILE]
 
-Cells are of one size. Voxel Remesh is as Blender has it at first: it moves its vertices onto the
-source, where ours stay where the occupancies of cells tell. Only quads count that are more than two
-cells from edges of the source that turn by over 30 degrees. Sides and distances are in cells; the
-spread of sides is their standard deviation as a share of their mean, that of angles in degrees.
-Distances are those of vertices, and of the middles of quads, from the source. Armadillo is one of
+Cells are of one size. Voxel Remesh has its defaults: it moves its vertices onto the source, while
+ours stay where the occupancies of cells put them. Only quads count that are more than two cells
+from edges of the source that turn by over 30 degrees. Sides and distances are in cells; the spread
+of sides is their standard deviation as a share of their mean, the spread of angles is in degrees.
+Distances are from vertices, and from the middles of quads, to the source. Armadillo is one of
 the models gathered in ../shared beside the checkout.
 """
 
@@ -34,7 +34,7 @@ from bench.voxels.operator_times import suzanne
 EDGE_DEGREES, EDGE_CELLS = 30.0, 2.0
 SHAPES = ("sphere", "armadillo", "suzanne")
 ARMADILLO = "armadillo.obj"
-THICKNESS = 1.5  # As the add-on has it.
+THICKNESS = 1.5  # The add-on's default.
 HEAD = (
     "mesh",
     "quads of",
@@ -58,7 +58,7 @@ Indices = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Evenness:
-    """What is told of quads."""
+    """Statistics of a quad mesh."""
 
     count: int
     sides: Floats
@@ -77,7 +77,7 @@ class Evenness:
 
     @property
     def spread(self) -> float:
-        """How much sides differ."""
+        """The spread of sides, relative to their mean."""
         return float(self.sides.std() / self.sides.mean())
 
 
@@ -114,7 +114,7 @@ def shape(name: str) -> tuple[Floats, Indices]:
 
 
 def remeshed(name: str, cell: float) -> dict[str, NDArray]:
-    """Returns what Blender makes of a shape, and of which triangles."""
+    """Returns Blender's remesh of a shape, and the shape's triangles."""
     with tempfile.TemporaryDirectory() as folder:
         target, result = Path(folder, f"{name}.npz"), Path(folder, "quads.npz")
         if name != "suzanne":

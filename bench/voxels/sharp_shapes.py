@@ -2,8 +2,8 @@
 
 """Closed triangle meshes whose edges are known, for tests and benchmarks of sharp contours.
 
-They are made here, but for fandisk, which is read. All fit into a cube of side 2 around the origin
-and are turned against the axes, each in its own way, unless they are asked for as they are made.
+All are generated except fandisk, which is read. They fit into a cube of side 2 around the origin
+and are rotated, each in its own way, unless the unrotated shape is asked for.
 """
 
 from collections.abc import Callable, Sequence
@@ -99,8 +99,8 @@ def _bridged(outer: Loop, holes: Sequence[Loop], flat: dict[int, Floats]) -> Loo
     """Joins holes to the outline, each by a bridge that is passed both ways."""
     rest = [list(hole) for hole in holes]
     while rest:
-        # The nearest pair of vertices of an open hole and the outline sees each other, but for
-        # other holes, which would be nearer.
+        # The nearest pair of vertices of an open hole and the outline sees each other: only another
+        # hole could be between, and it would be nearer.
         best = None
         ring = np.array([flat[i] for i in outer])
         for which, hole in enumerate(rest):
@@ -247,7 +247,7 @@ def bracket(facets: int = 96) -> Shape:
     large = circle(0.3, facets, 0, 0.25)
     left = solid.loop(np.insert(large, 0, -1, axis=1))
     right = solid.loop(np.insert(large, 0, -0.7, axis=1))
-    # By side of the outline: the loops of its holes, clockwise as seen from outside.
+    # Keyed by side of the outline: the loops of its holes, clockwise as seen from outside.
     holes = {
         0: lower,
         3: [ring[::-1] for ring in upper],
@@ -367,8 +367,8 @@ def shape(name: str, *, turned: bool = True) -> Shape:
     return made.moved(rotation(list(MAKERS).index(name) + 1)) if turned else made
 
 
-# With the number that places them so that hardly anything in union, intersection and difference is
-# thinner than three cells of 128, or that close to something else, but beside edges.
+# Pairs and a number that places them so that hardly anything in union, intersection and difference
+# is thinner than three cells of 128, or that close to something else, except beside edges.
 PAIRS = (
     ("cube", "cube", 5),
     ("cube", "cylinder", 1),

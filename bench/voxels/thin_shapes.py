@@ -15,13 +15,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ThinShape:
-    """A shape around the origin, and what it is.
+    """A shape around the origin, with its properties.
 
     Attributes:
         solid: In cells.
-        parts: What hangs together.
-        genus: Of all parts.
-        depth: Of an octree of cells of 1 that holds it in any pose.
+        parts: The number of connected parts.
+        genus: The genus of all parts together.
+        depth: The depth of an octree, with cells of size 1, that holds it in any pose.
     """
 
     solid: Solid

@@ -4,8 +4,8 @@
 
 Usage: scripts/run python3 bench/voxels/voxels.py [MODEL...] [--sizes N...] [--rounds N]
 
-Needs the models gathered in ../shared beside the checkout. What a peer needs is said where it is
-missing, and the peer left out.
+Needs the models gathered in ../shared beside the checkout. A peer whose requirements are missing is
+left out, with a message.
 
 The criteria: in CPU time of one thread, voxelize takes at most 0.25 of OpenVDB's meshToVolume, and
 with the contour at most 0.3 of Blender's voxel remesh; neither takes more memory than they; two
@@ -47,7 +47,7 @@ class Subject:
     depth: int
     low: tuple[float, ...]
     side: float
-    surface_cells: float  # How many cells the surface passes through, on average over its place.
+    surface_cells: float  # Cells that the surface crosses, on average over its position.
 
     @property
     def cell(self) -> float:
@@ -159,7 +159,7 @@ def row(key: str, runs: Runs, subject: Subject) -> list[str]:
 
 
 def judge(report: Report, runs: dict[str, Runs], key: str, peer: str, bar: float) -> None:
-    """Compares CPU time and memory with a peer that is there."""
+    """Compares CPU time and memory with an available peer."""
     if peer not in runs:
         return
     middles = [statistics.median(run.cpu_seconds for run in runs[name]) for name in (key, peer)]
@@ -175,7 +175,7 @@ def judge(report: Report, runs: dict[str, Runs], key: str, peer: str, bar: float
 
 
 def deepest(report: Report, subject: Subject, limit: float) -> None:
-    """Measures the finest cells there are."""
+    """Measures the greatest depth."""
     peer = Octree(subject.mesh, subject.low, subject.side, subject.depth, threads=2)
     run = peer.measure()
     report.verdict(

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Tells folds of a result from edges by which the solid itself turns as far.
+"""Distinguishes folds of a result from edges at which the solid itself turns as far.
 
-Edges of a solid are those of its mesh, caps of holes included and vertices in one place taken as
-one, several close together that turn to the same side, and the lines along which its triangles
-cross. Nothing here calls the library.
+A solid's edges are its mesh's edges, with caps of holes and with equal vertices merged; groups of
+close edges that turn to the same side; and the lines along which its triangles cross. Nothing here
+calls the library.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ from .nearest import Nearest, to_segments
 REACH = 0.25  # Cells between a fold and an edge of the solid.
 SLACK = 20.0  # Degrees by which a fold may turn farther.
 LEAST_BEND = 1.0  # Degrees: other edges are flat.
-ASIDE = 0.02  # Cells from a crossing to where it is looked what is inside.
+ASIDE = 0.02  # Cells from a crossing to the points tested for being inside.
 
 
 def are_wedges(
@@ -58,7 +58,7 @@ def _turns(positions: Floats, triangles: Indices, pairs: Indices, ends: Indices)
 
 
 def _welded(positions: Floats, triangles: Indices) -> tuple[Floats, Indices]:
-    """Vertices in one place as one; without what has no area, and without sheets' two faces."""
+    """Merges equal vertices; drops triangles without area and both faces of sheets."""
     positions, names = np.unique(positions, axis=0, return_inverse=True)
     triangles = names.reshape(-1)[triangles]
     _, first, counts = np.unique(
@@ -74,7 +74,7 @@ def _at_edges(
 ) -> np.ndarray:
     """Whether a mesh turns as far within reach of a point, to the same side.
 
-    By one edge, or by several that follow each other, as where an edge is chamfered.
+    The turn may be at one edge, or at several in a row, as where an edge is chamfered.
     """
     found = np.zeros(len(points), bool)
     ends, pairs, degrees = measures.edges(*mesh)
@@ -117,8 +117,8 @@ def _at_crossings(
 ) -> np.ndarray:
     """Whether a point is near a line along which triangles cross that are as far from parallel.
 
-    There a solid is concave, as where parts overlap. It is convex where only what is behind both
-    triangles is inside, as where a cap of a hole leaves its mesh for a bit: winding numbers tell.
+    There a solid is concave, as where parts overlap. It is convex where only the space behind both
+    triangles is inside, as where a cap of a hole leaves its mesh for a bit: winding numbers decide.
     """
     found = np.zeros(len(points), bool)
     if not len(points):
@@ -146,7 +146,7 @@ def _at_crossings(
 
 
 def _are_convex(points: Floats, normals: Floats, corners: Floats, aside: float) -> np.ndarray:
-    """Whether of four points around each one where planes cross only that behind both is inside."""
+    """Whether of four points around each crossing of planes only the one behind both is inside."""
     n, m = normals[:, 0], normals[:, 1]
     cosine = (n * m).sum(axis=1)
     shares = []
@@ -159,7 +159,7 @@ def _are_convex(points: Floats, normals: Floats, corners: Floats, aside: float) 
 
 
 def _winding_numbers(points: Floats, corners: Floats) -> Floats:
-    """How often triangles wind around points (van Oosterom and Strackee 1983)."""
+    """Winding numbers of triangles around points (van Oosterom and Strackee 1983)."""
     sums = np.zeros(len(points))
     for i, point in enumerate(points):
         a, b, c = np.moveaxis(corners - point, 1, 0)
@@ -190,7 +190,7 @@ def _crossings(a: Floats, b: Floats) -> tuple[Floats, Floats, Indices]:
 
 
 def _chord(corners: Floats, heights: Floats, line: Floats) -> tuple[Floats, Floats]:
-    """The ends, in order along a line, of what triangles have of a plane."""
+    """The ends, in order along a line, of the triangles' sections with a plane."""
     rows = np.arange(len(corners))
     low = heights < 0
     # The corner that is alone on its side.
@@ -206,7 +206,7 @@ def _chord(corners: Floats, heights: Floats, line: Floats) -> tuple[Floats, Floa
 
 
 def _extreme(points: list[Floats], line: Floats, *, is_least: bool) -> tuple[Floats, Floats]:
-    """Of two points each, how far along a line the one is that is the least or most, and it."""
+    """Returns the least or greatest coordinate along a line per pair of points, and its point."""
     along = np.stack([(p * line).sum(axis=1) for p in points])
     chosen = along.argmin(axis=0) if is_least else along.argmax(axis=0)
     rows = np.arange(len(chosen))

@@ -24,7 +24,7 @@ WHO = {
     "texture_artist": ("Texture artist", "a facade, straightened", 3),
     "newcomer": ("Newcomer", "a demonstration, from the zip", 4),
 }
-"""By path: the user, the goal, and the limit of clicks."""
+"""For each path: the user, the goal, and the limit of clicks."""
 WITHOUT_EXTENSION = {"newcomer"}
 """Paths of a Blender without the extension, which gets the zip in build/."""
 TOLD = "prefilter: path "

@@ -66,7 +66,7 @@ def main(target: Path) -> None:
 
 
 def shares(points: Floats) -> np.ndarray:
-    """Returns the scan of each point: that of its side."""
+    """Returns the scan number of each point, by the side it is on."""
     angle = np.arctan2(points[:, 1], points[:, 0] + 0.3)
     return np.floor((angle / (2 * np.pi) + 0.4) * FILES).astype(int) % FILES
 

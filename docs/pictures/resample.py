@@ -30,7 +30,7 @@ CORNERS = {
     "upper_right": (0.70, 0.95),
     "upper_left": (0.36, 0.82),
 }
-LEFT, BOTTOM, MAGNIFIED = 318, 262, 4  # Where the close-ups begin, and how large their pixels are.
+LEFT, BOTTOM, MAGNIFIED = 318, 262, 4  # Corner of the close-ups, and their scale.
 METHODS = {"exact": "Exact", "8": "8 Texels", "trilinear": "Trilinear"}
 
 

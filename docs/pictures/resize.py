@@ -20,7 +20,7 @@ Array = NDArray[np.float32]
 PAPER, INK = (246, 246, 244), (40, 40, 40)
 GAP, TEXT = 16, 18
 SIZE, SMALL = 384, 64
-FINE = 4  # What the picture is drawn at, by its size.
+FINE = 4  # Oversampling of the drawing.
 SHOWN = (
     ("box", "auto", "Box"),
     ("lanczos3", "auto", "Lanczos 3"),

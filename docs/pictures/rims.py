@@ -27,7 +27,7 @@ SAMPLES = 24
 RADIUS = 0.42
 CREASE = math.radians(30)
 TOWARD = mathutils.Vector((0.25, -0.55, 1.0)).normalized()
-WHOLE, CLOSE = 2.6, 0.5  # How wide the camera sees.
+WHOLE, CLOSE = 2.6, 0.5  # Widths of the camera's view.
 Mesh = tuple[np.ndarray, np.ndarray]
 
 

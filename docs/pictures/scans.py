@@ -56,7 +56,7 @@ HUES = np.array(
 BUNNY_DEPTH = 8
 NOISY_DEPTH, NOISY_POINTS = 8, 400_000
 UNEVEN_DEPTH, UNEVEN_POINTS = 8, 800_000  # Before they are thinned out.
-SPARSEST = 1 / 40  # Of the densest points' density.
+SPARSEST = 1 / 40  # Relative to the greatest density.
 KINDS = {
     "Haar": {"wavelet": "haar", "smooth": False, "fit": False},
     "D4": {"wavelet": "d4", "smooth": False, "fit": False},

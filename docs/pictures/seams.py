@@ -22,8 +22,8 @@ from bench.mipmaps import sampling
 LEVEL = 5
 BUDGETS = (0.0, 0.01)
 LINE = 0.008  # Half the width of a line on the model.
-VIEW = 1.1  # Of the forehead.
-SHIFT = (-0.32, 0.45)  # To it, in views.
+VIEW = 1.1  # Size of the view of the forehead.
+SHIFT = (-0.32, 0.45)  # Shift to it, in views.
 MAGENTA = (1.0, 0.0, 1.0, 1.0)
 
 

@@ -29,7 +29,7 @@ GRID = (222, 222, 226)
 WIDTH, HEIGHT = 900, 560
 LEFT, RIGHT, BOTTOM, TOP = 70, 24, 60, 24  # Margins.
 MOST = 2.0  # The error at the top.
-DASHES = {1: (), 2: (9.0, 5.0)}  # By degree.
+DASHES = {1: (), 2: (9.0, 5.0)}  # Keyed by degree.
 
 
 def main(folder: Path) -> None:

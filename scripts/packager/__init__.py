@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Makes wheels and extensions of what is built, and checks them; see command_line.py."""
+"""Makes wheels and extensions from a build, and checks them; see command_line.py."""

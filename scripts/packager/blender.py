@@ -14,7 +14,7 @@ _REPOSITORY = "user_default"  # Blender's, of extensions that come from files.
 
 
 def run_blender(blender: Sequence[str], *arguments: str, resources: Path | None = None) -> None:
-    """Runs one of Blender's commands with factory settings; its output is shown where it fails.
+    """Runs one of Blender's commands with factory settings; shows its output if it fails.
 
     Args:
         blender: The command that starts Blender.

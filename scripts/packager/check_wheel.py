@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What keeps a wheel from going into Blender's process, on any of the platforms."""
+"""Faults that keep a wheel from going into Blender's process, on any of the platforms."""
 
 import io
 import re
@@ -21,13 +21,13 @@ _COMPILED = re.compile(r"\.(so|pyd|dll|dylib)(\.|$)")
 def wheel_faults(
     name: str, wheel: bytes, *, newest_glibc: Version | None = None, source: Path = SOURCE
 ) -> list[str]:
-    """Returns what is wrong with a wheel; nothing where it may go into Blender's process.
+    """Returns the faults of a wheel; empty if it may go into Blender's process.
 
     Args:
-        name: Of the file.
-        wheel: What is in it.
-        newest_glibc: What a Linux module may ask for; None: what its platform allows.
-        source: The checkout, which says which libraries are linked in.
+        name: Its file name.
+        wheel: Its bytes.
+        newest_glibc: The newest glibc that a Linux module may need; None: its platform's.
+        source: The checkout, which determines the linked libraries.
     """
     found = []
     with (
@@ -67,7 +67,7 @@ def wheel_faults(
 
 
 def bundled_faults(name: str, names: Sequence[str], modules: Mapping[str, bytes]) -> list[str]:
-    """Returns what is wrong with a wheel of others, by its name, its files, and its modules."""
+    """Returns the faults of a third-party wheel: in its name, its files, and its modules."""
     found = []
     if name.endswith("-py3-none-any.whl"):
         if modules:
@@ -82,7 +82,7 @@ def bundled_faults(name: str, names: Sequence[str], modules: Mapping[str, bytes]
 
 
 def foreign_module_faults(name: str, modules: Mapping[str, bytes]) -> list[str]:
-    """Returns what keeps the one module of a wheel of others out of Blender's process."""
+    """Returns the faults of the one module of a third-party wheel."""
     named = platform_of_wheel(name)
     if named is None or len(modules) != 1:
         return [f"holds {len(modules)} modules, for no platform or not just one"]
@@ -117,7 +117,7 @@ def suffix_faults(path: str, python: str, platform: Platform) -> list[str]:
 
 
 def module_faults(module: Module, python: str, platform: Platform) -> list[str]:
-    """Returns what is wrong with a module, but for the system that it needs."""
+    """Returns the faults of a module, except faults of its lowest system version."""
     if (module.form, module.machine) != (platform.form, platform.machine):
         return [f"is {module.form} for {module.machine}, not for {platform.name}"]
     found = list(module.faults)
@@ -130,12 +130,12 @@ def module_faults(module: Module, python: str, platform: Platform) -> list[str]:
 
 
 def system_faults(needed: Version, named: Version, allowed: Version) -> list[str]:
-    """Returns what is wrong with the lowest system that a module runs on.
+    """Returns the faults in the lowest system version that a module runs on.
 
     Args:
-        needed: What the module says.
-        named: What the wheel's name says.
-        allowed: The newest that it may be.
+        needed: The version in the module.
+        named: The version in the wheel's name.
+        allowed: The newest allowed version.
     """
     found = []
     if later(needed, named):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Make the extension of what is built, check it, and install it.
+"""Make the extension from a build, check it, and install it.
 
 usage: packager extension --tag cp313 ... PARTS [--install FOLDER] -- BLENDER...
        packager release --tag cp313 ... --zig FOLDER PARTS -- BLENDER...
@@ -34,7 +34,7 @@ from packager.project import PackagingError, note
 
 
 def check(extension: Path, newest_glibc: tuple[int, int] | None, blender: Sequence[str]) -> bool:
-    """Says what is wrong with a zip and its wheels; returns whether nothing is."""
+    """Reports the faults of a zip and its wheels; returns whether there are none."""
     from packager.blender import validate
     from packager.check_wheel import wheel_faults
 
@@ -88,8 +88,8 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
 
 
 def run(options: argparse.Namespace) -> bool:
-    """Does what the command line says; returns whether nothing was found to be wrong."""
-    # What reads modules is in a folder that the command line names.
+    """Runs the command; returns whether it found no fault."""
+    # LIEF, which reads modules, is in a folder that the command line names.
     sys.path.append(str(options.reader))
     from packager.extension import Parts, install, make_extension, make_release
     from packager.platforms import glibc_here

@@ -24,17 +24,17 @@ from packager.project import (
 )
 from packager.wheels import make_wheel
 
-DEBIAN_TAGS = ("cp313", "cp314")  # Of Debian 13's Blender, and of sid's.
+DEBIAN_TAGS = ("cp313", "cp314")  # Debian 13's Blender, and sid's.
 
 
 @dataclass(frozen=True)
 class Parts:
-    """What goes into an extension beside the add-on and our packages.
+    """The contents of an extension besides the add-on and our packages.
 
     Attributes:
         linked: Source folders of linked libraries.
-        bundled: Wheels of others that go along as they are.
-        modules: Those that hold modules, for Pythons and platforms.
+        bundled: Third-party wheels, included unchanged.
+        modules: Wheels of compiled modules, for Pythons and platforms.
         blender: The command that starts Blender.
     """
 
@@ -89,7 +89,7 @@ def with_wheels(manifest: str, platforms: Iterable[str], wheels: Iterable[Path])
 def stage_extension(
     folder: Path, platforms: Sequence[str], wheels: Sequence[Path], parts: Parts
 ) -> None:
-    """Lays out in a folder what is to be zipped."""
+    """Lays out in a folder the files to zip."""
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(SOURCE / "addon", folder, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(SOURCE / "LICENSE", folder)
@@ -101,7 +101,7 @@ def stage_extension(
 
 
 def empty_folder(path: Path) -> Path:
-    """Returns a folder with nothing in it."""
+    """Returns an empty folder."""
     shutil.rmtree(path, ignore_errors=True)
     path.mkdir(parents=True)
     return path
@@ -112,7 +112,7 @@ def make_extension(tags: Sequence[str], parts: Parts) -> Path:
 
     Args:
         tags: The Pythons whose packages go in.
-        parts: What else does.
+        parts: The other contents.
     """
     version = project_version()
     target = BUILD / f"{NAME}-{version}.zip"
@@ -183,7 +183,7 @@ def make_release(tags: Sequence[str], zig: Path, parts: Parts) -> list[Path]:
 
 
 def check_contents(extension: Path, bundled: Sequence[Path]) -> None:
-    """Refuses a zip that Blender has made without one of its wheels, or not at all."""
+    """Refuses a missing zip, or one that lacks some of its wheels."""
     if not extension.exists():
         raise PackagingError(f"Blender made no {extension.name}")
     with zipfile.ZipFile(extension) as archive:
@@ -199,9 +199,9 @@ def check_contents(extension: Path, bundled: Sequence[Path]) -> None:
 
 
 def install(extension: Path, resources: Path, blender: Sequence[str]) -> None:
-    """Installs and enables the extension, as a user would, in a folder where it is another.
+    """Installs and enables a changed extension in a folder, as a user would.
 
-    What was installed there goes first: Blender keeps a wheel whose name it knows.
+    The installed version is removed first: Blender keeps a wheel whose name it knows.
     """
     stamp = resources / ".installed"
     mark = hashlib.sha256(extension.read_bytes()).hexdigest()

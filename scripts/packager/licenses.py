@@ -11,7 +11,7 @@ from packager.project import SOURCE, PackagingError
 
 _DOCUMENTS = Path("/usr/share/doc")
 _NOT_LINKED = {"cross", "prefilter", "python"}  # Folders of native/ that are no other's library.
-# What Zig links in: its compiler's runtime, that of C++, and what there is of each C library.
+# Zig links these in: its compiler's runtime, the C++ runtime, and parts of each C library.
 _ZIG = {
     "zig/LICENSE": "LICENSE",
     "libcxx/LICENSE.TXT": "lib/libcxx/LICENSE.TXT",
@@ -36,11 +36,11 @@ def _zig_texts(platform: Platform) -> dict[str, str]:
 def license_texts(
     linked: Iterable[Path], platform: Platform, zig: Path | None = None
 ) -> dict[str, Path]:
-    """Returns the texts that go along, by name: ours and those of what is linked in.
+    """Returns the license texts to include, by name: ours and the linked libraries'.
 
     Args:
         linked: Source folders of linked libraries, with LICENSE.txt and perhaps NOTICE.txt.
-        platform: What the module is for.
+        platform: The module's platform.
         zig: The folder that ziglang's package is installed in; None if the host's GCC compiled.
 
     Raises:
@@ -66,12 +66,12 @@ def license_texts(
 def missing_licenses(
     names: Collection[str], platform: Platform, source: Path = SOURCE
 ) -> list[str]:
-    """Returns what a wheel has no license text of.
+    """Returns the libraries whose license text a wheel lacks.
 
     Args:
-        names: Of its texts, below the folder of licenses.
-        platform: What the wheel is for.
-        source: The checkout, each of whose folders of native/ is a linked library, but for ours.
+        names: The names of its texts, below the folder of licenses.
+        platform: The wheel's platform.
+        source: The checkout, where each folder of native/ except ours is a linked library.
     """
     libraries = sorted(
         path.parent.name

@@ -29,8 +29,8 @@ PAGES = (
     *("resize", "resample", "sampling", "shaders", "voxels", "scans", "shapes", "svg", "queue"),
     *("preferences", "command_line", "farm", "conventions"),
 )
-"""What users of the add-on need. Links to other pages become plain text."""
-_QUALITY = 80  # Of pictures, where 100 is the best: differences from the PNG files are not seen.
+"""Pages for users of the add-on. Links to other pages become plain text."""
+_QUALITY = 80  # Picture quality, at most 100: differences from the PNG files are invisible.
 
 _PAGE = """<!DOCTYPE html>
 <html lang="en">

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a compiled module says of itself, in three formats: ELF, PE (Windows), Mach-O (macOS).
+"""Reads the headers of compiled modules in three formats: ELF, PE (Windows), Mach-O (macOS).
 
 Needs LIEF, the library that reads them; scripts/packager.txt has its version.
 """
@@ -27,15 +27,15 @@ _OF_MACHO_LINKERS = {"___dso_handle", "__mh_dylib_header"}
 
 @dataclass
 class Module:
-    """What its loader will look at.
+    """The properties of a module that its loader checks.
 
     Attributes:
         form: ELF, PE or Mach-O.
         machine: x86_64 or arm64; any other as LIEF names it.
         exports: The names that others can link to.
-        libraries: What is loaded with it.
+        libraries: The libraries loaded with it.
         lowest: The lowest version of the system that it runs on: glibc, Windows or macOS.
-        faults: What else would keep it from loading, or does not belong there.
+        faults: Any other reason that would keep it from loading, or content that is out of place.
     """
 
     form: str
@@ -171,16 +171,16 @@ def _macho_exports(macho: "lief.MachO.Binary") -> "Iterator[lief.MachO.Symbol]":
         yield from (each.symbol for each in macho.dyld_exports_trie.exports)
 
 
-# Of Apple's cs_blobs.h; numbers are big-endian.
+# Constants of Apple's cs_blobs.h; numbers are big-endian.
 _SUPER_BLOB, _CODE_DIRECTORY = 0xFADE0CC0, 0xFADE0C02
 _SHA256 = 2
 
 
 def _signature_fault(macho: "lief.MachO.Binary", data: bytes) -> str:
-    """Returns what is wrong with the signature that arm64's macOS wants; empty where nothing is.
+    """Returns the fault in the signature that macOS on arm64 requires; empty if there is none.
 
-    Any signature will do, also one of nobody: but its hashes must be those of the file's pages,
-    or the system ends the process that loads the module.
+    Any signature will do, even an ad-hoc one, but its hashes must match the file's pages, or the
+    system ends the process that loads the module.
     """
     if not macho.has_code_signature:
         return "is not signed"
@@ -204,7 +204,7 @@ def _signature_fault(macho: "lief.MachO.Binary", data: bytes) -> str:
 
 
 def _pages_match(directory: bytes, data: bytes, end: int) -> bool:
-    """Whether the hashes of a CodeDirectory are those of the file's pages before its signature."""
+    """Whether the hashes of a CodeDirectory match the file's pages before its signature."""
     hashes, _, _, pages, limit = struct.unpack_from(">IIIII", directory, 16)
     size, kind, _, page_bits = struct.unpack_from(">BBBB", directory, 36)
     if kind != _SHA256 or limit != end:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The platforms that there are wheels for, by Blender's names, and what is allowed on each."""
+"""The platforms that there are wheels for, by Blender's names, and the limits of each."""
 
 import platform
 import re

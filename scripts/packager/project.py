@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where things are in the checkout, its version, and the errors of packaging."""
+"""The checkout's paths and version, and the errors of packaging."""
 
 import re
 import sys
@@ -14,11 +14,11 @@ NAME = "prefilter"
 
 
 class PackagingError(Exception):
-    """What was built cannot be packaged; the message says why."""
+    """The build cannot be packaged; the message says why."""
 
 
 def note(text: str) -> None:
-    """Tells what goes on."""
+    """Prints progress."""
     print(f"prefilter: {text}", file=sys.stderr, flush=True)
 
 
@@ -41,7 +41,7 @@ def description(source: Path = SOURCE) -> str:
 
 
 def core_metadata(version: str, licenses: Iterable[str], source: Path = SOURCE) -> str:
-    """Returns METADATA of a wheel: what pyproject.toml says.
+    """Returns METADATA of a wheel, from pyproject.toml.
 
     Args:
         version: The wheel's.

@@ -27,7 +27,7 @@ IMPORTERS = {
     ".fbx": "import_scene.fbx",
 }
 LOGGERS = ("glTFImporter", "glTFImporter_errors")
-"""Where an import that fails leaves handlers, which go on to write to where it wrote."""
+"""Loggers where a failed import leaves handlers, which keep writing to the import's stream."""
 
 
 def run(*arguments: object, cwd: Path | None = None) -> Result:

@@ -28,7 +28,7 @@ def generate() -> set[str]:
 
 
 def contents(folder: Path) -> dict[Path, bytes]:
-    """Returns the files of a folder and of those in it."""
+    """Returns the files of a folder and its subfolders."""
     return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
@@ -135,7 +135,7 @@ def looked_up(texels: Array, u: Array, v: Array) -> Array:
 
 
 def pixel_means(texels: Array, size: int, *, is_encoded: bool = False) -> Array:
-    """Returns the means over square pixels of what Cycles looks up in a level."""
+    """Returns the means over square pixels of Cycles's lookups in a level."""
     samples = 8
     at = (np.arange(size * samples) + 0.5) / (size * samples)
     values = looked_up(texels, *np.meshgrid(at, at))

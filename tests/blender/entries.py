@@ -129,7 +129,7 @@ def appended() -> list[tuple[str, Callable[[Any, Any], None]]]:
 
 
 def panels() -> list[type]:
-    """Returns the add-on's panels, those within others after these."""
+    """Returns the add-on's panels, parents before their subpanels."""
     return sorted((one for one in bpy.types.Panel.__subclasses__() if _is_shown(one)), key=depth_of)
 
 
@@ -180,7 +180,7 @@ def editor(area: bpy.types.Area, kind: str, shown: bpy.types.Image | None) -> It
 
 
 def calls(area: bpy.types.Area) -> tuple[list[Call], set[str]]:
-    """Returns the operators that the menus offer, and what draws nothing at all.
+    """Returns the operators that the menus offer, and the menus that draw nothing.
 
     The scene becomes one in which all have something to offer.
     """
@@ -399,7 +399,7 @@ PANEL_SCENES = (
     *(empty, textured, cached, previewed, outlined, drawn, voxelized, sculpted, scanned),
     reconstructed,
 )
-"""In one of these, at the least, each panel has something to show."""
+"""Each panel has content in at least one of these."""
 
 
 def case_of(call: Call) -> Case:

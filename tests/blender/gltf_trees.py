@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What glTF files say, without their buffers."""
+"""Contents of glTF files, without their buffers."""
 
 import json
 import struct

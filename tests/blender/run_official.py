@@ -73,5 +73,5 @@ if __name__ == "__main__":
     status = main()
     sys.stdout.flush()
     sys.stderr.flush()
-    # What Blender does at the end of Python's process may fail, and is not ours.
+    # Blender's own work at the end of Python's process may fail; it is not ours.
     os._exit(status)

@@ -47,7 +47,7 @@ def write(path: Path) -> Path:
 
 
 def packed_las(contents: bytes, count: int) -> bytes:
-    """Packs a LAS file's points of format 6, with the extension's lazrs, as a LAZ file has them."""
+    """Compresses a LAS file's points of format 6 for a LAZ file, with the extension's lazrs."""
     import lazrs
 
     record = lazrs.LazVlr.new_for_compression(6, 0)

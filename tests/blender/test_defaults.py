@@ -18,7 +18,7 @@ ABSENT = {
     "background": ("transparent", None),
     "table": ("", None),
     "target": ("filter", None),
-    # Without it, occupancies are exact.
+    # Without a thickness, occupancies are exact.
     "thickness": (1.5, 0.0),
 }
 

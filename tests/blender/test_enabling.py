@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What Blender loads when it starts with the add-on: what draws and declares, and no work."""
+"""Modules loaded at start with the add-on: drawing and declarations, and no work."""
 
 import os
 import re

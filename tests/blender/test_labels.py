@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Labels and what menus show fit into a sidebar of the width that Blender gives it at first."""
+"""Labels and menus' choices fit into a sidebar of Blender's default width."""
 
 import dataclasses
 import importlib

@@ -61,7 +61,7 @@ def test_a_bake_has_the_short_flag(model, tmp_path):
 
 @pytest.mark.parametrize("name", ["CON", "aux.png", "nul", "a:b", "what?", "dots...", "cafe\u0301"])
 def test_names_of_images_become_names_of_files(tmp_path, addon, name):
-    """That every system allows, each its own."""
+    """Every system allows the names, and they stay distinct."""
     image = bpy.data.images.new(name, 4, 4)
     bpy.data.images.new("other", 4, 4)
     files = addon("mipmaps.file_names")

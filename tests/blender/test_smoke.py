@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Every operator once, on small scenes: what must work in whichever Blender there is.
+"""Runs every operator once on small scenes, which must work in any Blender.
 
 Nothing here needs a window or OpenImageIO's Python module. A new operator needs a test here, named
 after it.

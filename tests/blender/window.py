@@ -152,7 +152,7 @@ def picture(area: bpy.types.Area, kind: str = "WINDOW") -> Generator[None, None,
 
 
 class Pointer:
-    """The pointer as the X server has it, by the extension XFixes."""
+    """The X server's pointer image, by the extension XFixes."""
 
     class _Image(ctypes.Structure):
         """XFixesCursorImage, up to the last field that is read."""
@@ -272,7 +272,7 @@ class Stage:
 
     @property
     def override(self) -> dict[str, Any]:
-        """What `temp_override` takes for operators to run there."""
+        """Arguments of `temp_override` for running operators there."""
         return {"window": self.window, "area": self.area, "region": region(self.area, "WINDOW")}
 
     @property
@@ -339,7 +339,7 @@ def largest(kind: str = "") -> Stage:
     if kind:
         area.type = kind
     if area.type == "VIEW_3D":
-        # What software takes long to draw, and no session looks at.
+        # These are slow in software rendering, and no session looks at them.
         bpy.context.preferences.system.viewport_aa = "OFF"
         area.spaces.active.overlay.show_overlays = False
         area.spaces.active.show_gizmo = False

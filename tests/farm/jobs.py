@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What jobs of a farm are given in the tests, and the Blender that does them."""
+"""Inputs of the tests' farm jobs, and the Blender that runs them."""
 
 import os
 import struct
@@ -19,7 +19,7 @@ needs_blender = pytest.mark.skipif(not BLENDER, reason="no Blender with the exte
 
 
 def run(*command: object) -> str:
-    """Runs a program that is to succeed, and returns what it prints."""
+    """Runs a program that is to succeed, and returns its output."""
     words = [str(word) for word in command]
     done = subprocess.run(words, capture_output=True, text=True, timeout=1500)
     assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The job templates that the zip has: for Open Job Description, and for Flamenco 3.
+"""The job templates in the zip: for Open Job Description, and for Flamenco 3.
 
 PREFILTER_OPENJD is the program `openjd`, PREFILTER_BLENDER_COMMAND one that starts a Blender with
-the extension; scripts/test sets both, for two Blenders. Without them, what needs them is skipped.
+the extension; scripts/test sets both, for two Blenders. Tests that need a missing one are skipped.
 """
 
 import json
@@ -59,7 +59,7 @@ def compiled(name: str, **settings: object) -> dict[str, Any]:
 
 
 def commands(job: dict[str, Any]) -> list[list[str]]:
-    """Returns what each task runs."""
+    """Returns the command of each task."""
     found = []
     for task in job["tasks"]:
         assert task["type"] == "blender"

@@ -32,7 +32,7 @@ VISIBLE int PyInit__native(void) { return %s; }
 
 
 def cache_folder() -> Path:
-    """Returns where scripts/lib.sh keeps what it fetches."""
+    """Returns the cache folder of scripts/lib.sh."""
     home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     return Path(os.environ.get("PREFILTER_CACHE") or Path(home, "prefilter"))
 

@@ -174,7 +174,7 @@ def test_rasterize(programs: Path, tmp_path: Path) -> None:
         rows = (fine < ay) != (fine < by)
         crossing = ax + (fine[rows] - ay) * (bx - ax) / (by - ay)
         is_inside[rows] ^= fine < crossing[:, None]
-        # A segment is short: only what is around it can be under its stroke.
+        # A segment is short: only pixels around it can be under its stroke.
         x = slice(*np.searchsorted(fine, [min(ax, bx) - 4, max(ax, bx) + 4]))
         y = slice(*np.searchsorted(fine, [min(ay, by) - 4, max(ay, by) + 4]))
         along = np.array([bx - ax, by - ay])

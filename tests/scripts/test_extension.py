@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What goes into the zips, and what keeps them from being made."""
+"""The contents of the zips, and the errors that keep them from being made."""
 
 import tomllib
 import zipfile

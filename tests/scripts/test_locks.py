@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""No two processes change a build folder at once: what Ninja keeps there would not survive it."""
+"""No two processes change a build folder at once: Ninja's files would be damaged."""
 
 import subprocess
 from pathlib import Path

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What reviewers of extensions read: the manifest, and the files beside it."""
+"""The files that reviewers of extensions read: the manifest, and the files beside it."""
 
 import re
 import tomllib
@@ -10,7 +10,7 @@ import pytest
 
 CHECKOUT = Path(__file__).resolve().parents[2]
 MANIFEST = tomllib.loads((CHECKOUT / "blender_manifest.toml").read_text())
-# What libraries are called where it is not the name of their table.
+# Names of libraries that differ from the names of their tables.
 NAMES = {"basisu": "Basis Universal", "cvtt": "Convection Texture Tools"}
 COMPILERS = ("pybind11", "libc++", "libunwind", "Zig", "mingw-w64", "glibc", "GCC")
 
@@ -21,7 +21,7 @@ def holders_of(name: str, lines: list[str]) -> list[str]:
 
 
 def missing_holders(lines: list[str]) -> list[str]:
-    """What is linked in or brought along, and has no line."""
+    """Returns the linked or bundled libraries that have no line."""
     linked = tomllib.loads((CHECKOUT / "scripts/sources.toml").read_text())
     names = [name.rpartition("-")[0] for name in linked]
     lists = [CHECKOUT / "scripts" / name for name in ("bundled.txt", "bundled_modules.txt")]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What is read of compiled modules, and each of their faults, in modules that have it."""
+"""The properties read from compiled modules, and each of their faults in a module that has it."""
 
 import struct
 from pathlib import Path

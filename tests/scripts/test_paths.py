@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The page of the paths says what was measured, and none takes more clicks than it may."""
+"""The page of the paths has the measured numbers, and no path takes more clicks than allowed."""
 
 import sys
 from pathlib import Path

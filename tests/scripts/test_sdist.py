@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The source distribution for pip, and what pyproject.toml says of the package."""
+"""The source distribution for pip, and the package's metadata in pyproject.toml."""
 
 import fnmatch
 import re

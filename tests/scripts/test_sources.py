@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Sources of linked libraries: their table, where they come from, and what is kept of them."""
+"""Sources of linked libraries: their table, their downloads, and their kept files."""
 
 import hashlib
 import http.server

@@ -13,7 +13,7 @@ STEPS = Path(__file__).resolve().parents[2] / "scripts/steps.sh"
 
 
 def run(program: str, folder: Path, only: str = "") -> tuple[int, str]:
-    """Runs steps in a folder; returns the exit status and what was printed."""
+    """Runs steps in a folder; returns the exit status and the output."""
     done = subprocess.run(
         ["bash", "-c", f"set -euo pipefail\n. '{STEPS}'\n{program}\nrun_steps"],
         cwd=folder,

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What goes into wheels, and what the check of them finds."""
+"""The contents of wheels, and the faults that the check of them finds."""
 
 import io
 import tomllib

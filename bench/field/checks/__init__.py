@@ -9,7 +9,7 @@ from bench.field.checks import messages, pictures, surfaces, textures
 from bench.field.runs import Run
 
 Truth = Mapping[str, Any]
-"""What a generator knows of its file: see the modules in `generators`."""
+"""The facts that a generator knows about its file: see the modules in `generators`."""
 
 _OF_RESULTS: dict[str, Callable[[Run, Truth], list[str]]] = {
     "voxelize": surfaces.check_solid,
@@ -24,7 +24,7 @@ _OF_RESULTS: dict[str, Callable[[Run, Truth], list[str]]] = {
 
 
 def check(run: Run, truth: Truth) -> list[str]:
-    """Returns what is wrong with a run, each finding as its class, a colon and details."""
+    """Returns the faults of a run, each as its class, a colon and details."""
     findings = [*run.findings, *messages.check(run, truth)]
     if run.has_result:
         findings += _OF_RESULTS[run.entry_point](run, truth)

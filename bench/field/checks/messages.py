@@ -17,7 +17,7 @@ _OURS = re.compile(r"^(?:prefilter: |error: |Error: |Warning: )", re.M)
 
 
 def check(run: Run, truth: Mapping[str, Any]) -> list[str]:
-    """Returns what is wrong with the exit status and the output of a run."""
+    """Returns the faults in the exit status and the output of a run."""
     if run.status is None:
         return ["time limit: it did not end"]
     if run.status < 0 or run.status > 128:

@@ -16,13 +16,14 @@ from bench.field.checks.messages import warnings
 Floats = NDArray[np.float64]
 
 MIN_BLOCK_PIXELS = 12
-"""Of a result: pictures are compared by means over blocks, whose borders a filter blurs."""
+"""Smallest block side, in pixels of the result: pictures are compared by means over blocks, because
+a filter blurs the borders."""
 MAX_BLOCKS = 4
 MAX_BLOCK_DIFFERENCE = 0.03
-"""Of linear light: overshoots of a filter at lines are cut off in files of bytes."""
+"""In linear light. It allows for byte files, which clip a filter's overshoots at lines."""
 MAX_DRAWING_DIFFERENCE = 8 / 255
 RESVG_WIDTH = 1024
-"""About that of the picture that is compared, whose longer side this is by default."""
+"""About the width of the compared picture, whose longer side is this by default."""
 Image.MAX_IMAGE_PIXELS = None
 _TURNS = {
     2: Image.Transpose.FLIP_LEFT_RIGHT,
@@ -48,7 +49,7 @@ def check_resized(run: Any, truth: Mapping[str, Any]) -> list[str]:
         return []
     findings = []
     upright = _upright(source, run.source)
-    # A tag that is carried over turns the result in whatever shows it.
+    # A copied orientation tag would turn the result in viewers.
     shown = ImageOps.exif_transpose(made)
     right = tuple(max(1, round(side / 2)) for side in upright.size)
     if any(abs(a - b) > 1 for a, b in zip(shown.size, right, strict=True)):
@@ -61,7 +62,7 @@ def check_resized(run: Any, truth: Mapping[str, Any]) -> list[str]:
         findings.append(f"alpha: {source.mode} became {made.mode}")
     if min(shown.size) < MIN_BLOCK_PIXELS or source.mode in ("F", "I") or _is_premultiplied(source):
         return findings
-    # With one profile for both, colors outside of sRGB need no clipping to be compared.
+    # A shared profile keeps colors outside sRGB comparable without clipping.
     converts = upright.info.get("icc_profile") != shown.info.get("icc_profile")
     blocks = min(MAX_BLOCKS, min(shown.size) // MIN_BLOCK_PIXELS)
     means = [_block_means(image, blocks, converts=converts) for image in (upright, shown)]
@@ -76,7 +77,7 @@ def check_drawn(run: Any, truth: Mapping[str, Any]) -> list[str]:
     picture = np.asarray(Image.open(run.target).convert("RGBA"), float) / 255
     findings = []
     if "covered_share" in truth:
-        # Of the picture without the margin that the command leaves around shapes.
+        # Crop the margin that the command leaves around shapes.
         rows, columns = np.nonzero(picture[..., 3] > 0)
         if not len(rows):
             return ["empty: nothing is drawn"]
@@ -99,9 +100,9 @@ def check_drawn(run: Any, truth: Mapping[str, Any]) -> list[str]:
 
 
 def _upright(image: Image.Image, path: Path) -> Image.Image:
-    """Returns a picture as its orientation says that it is shown.
+    """Returns a picture turned upright by its orientation.
 
-    Pillow turns TIFF files by itself while it loads them, and those of some modes twice.
+    Pillow turns TIFF files by itself while it loads them, and in some modes twice.
     """
     if image.format != "TIFF":
         return ImageOps.exif_transpose(image)
@@ -212,7 +213,7 @@ def _by_resvg(path: Path) -> Floats | None:
 
 
 def _compare_drawings(picture: Floats, second: Floats, run: Any) -> list[str]:
-    """Compares what is inside of the boxes of what is visible, at the same size."""
+    """Compares the visible parts of two drawings, cropped and scaled to the same size."""
     cut = [_visible(one) for one in (picture, second)]
     if any(one is None for one in cut):
         is_lost = cut[0] is None and cut[1] is not None

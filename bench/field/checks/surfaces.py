@@ -27,7 +27,7 @@ MAX_RESULT_TRIANGLES = 400_000
 
 
 def check_solid(run: Any, truth: Mapping[str, Any]) -> list[str]:
-    """Checks a result of Voxelize against the mesh that it was made of."""
+    """Checks a result of Voxelize against its source mesh."""
     mesh = ply.read_mesh(run.target)
     positions, triangles = np.asarray(mesh.positions, float), np.asarray(mesh.triangles)
     if not len(triangles):
@@ -53,7 +53,7 @@ def check_solid(run: Any, truth: Mapping[str, Any]) -> list[str]:
 
 
 def check_scan(run: Any, truth: Mapping[str, Any]) -> list[str]:
-    """Checks a result of Reconstruct Surface against the points, or the shape that they are of."""
+    """Checks a result of Reconstruct Surface against the points, or the sampled shape."""
     mesh = ply.read_mesh(run.target)
     positions, triangles = np.asarray(mesh.positions, float), np.asarray(mesh.triangles)
     if not len(triangles):
@@ -103,9 +103,9 @@ def _intersecting_pairs(positions: Floats, triangles: Indices) -> int:
 
 
 def _source_mesh(path: Path) -> tuple[Floats, Indices] | None:
-    """Returns the triangles of a file; None for a file that is not read, or holds none.
+    """Returns the triangles of a file; None if it is unreadable, or holds none.
 
-    trimesh reads files, except those of polygons: it cuts these as fans, convex or not.
+    trimesh reads triangle files; it would cut polygons as fans, convex or not.
     """
     import trimesh
 
@@ -134,7 +134,7 @@ def _check_distances(
     findings = []
     points, _ = measures.surface_samples(*source, SAMPLES)
     lost = _distances(points, *result) / cell
-    # What lies inside of the result is not lost: it is an inner face of the source.
+    # Parts of the source inside the result are not lost: they are inner faces.
     is_far = lost > MAX_CELLS_OFF
     if is_far.mean() > 1 - HIGH_QUANTILE:
         outside = ~_inside(points[is_far][:200], *result)

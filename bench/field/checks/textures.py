@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Checks of levels, and of models with levels: valid files that keep what is not theirs."""
+"""Checks levels, and models with levels: valid files with all unrelated content preserved."""
 
 import json
 import shutil

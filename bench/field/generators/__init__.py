@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Ordinary inputs in bulk: each is a file, and beside it a JSON file with what is known of it.
+"""Ordinary inputs in bulk: each is a file with a JSON file of known facts beside it.
 
-The JSON file is called as the input with `.truth.json` behind. It may have:
+The JSON file has the input's name plus `.truth.json`. Its keys, all optional:
 
     must_work   whether a refusal is wrong
     must_say    patterns that the output has to have, such as the name of a warning
     closed, parts, genus, volume    of the right result of Voxelize, in the units of the file
-    shape, spacing, noise           what points are of, for the result of Reconstruct Surface
+    shape, spacing, noise           the sampled shape, for the result of Reconstruct Surface
     covered_share, color            of a drawing: of its box, and of its opaque pixels
     images                          how many images the right glTF file has
 """
@@ -28,7 +28,7 @@ _GENERATORS: dict[str, tuple[Callable[[Path, np.random.Generator], Mapping[str, 
     "drawing": (drawings.write, 0.12),
     "model": (models.write, 0.08),
 }
-"""Each writes a file beside a path without an extension; and its share of all files."""
+"""Functions that write a file at a path without an extension, and their shares of all files."""
 _TRUTH = ".truth.json"
 
 
@@ -50,6 +50,6 @@ def generate(folder: Path, count: int, seed: int) -> list[Path]:
 
 
 def truth_of(path: Path) -> Mapping[str, Any]:
-    """Returns what is known of a file; nothing for one that was not generated."""
+    """Returns the known facts about a file; empty for one that was not generated."""
     known = Path(f"{path}{_TRUTH}")
     return json.loads(known.read_text(encoding="utf-8")) if known.exists() else {}

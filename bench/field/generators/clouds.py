@@ -68,7 +68,7 @@ def _normals(
 def _with_faults(
     points: Floats, normals: Floats | None, random: np.random.Generator
 ) -> tuple[Floats, Floats | None, list[str]]:
-    """Adds points that are none, or all points again as a second scan has them."""
+    """Adds invalid points, or all points again as in a second scan."""
     fault = str(random.choice(["no", "no", "origin", "nan", "huge", "twice"]))
     count = len(points) // int(random.choice([3, 10, 100]))
     if fault == "no":

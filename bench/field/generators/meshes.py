@@ -208,7 +208,7 @@ def _placed(positions: Floats, random: np.random.Generator) -> Floats:
 
 
 def _damaged(faces: Faces, random: np.random.Generator) -> tuple[Faces, str]:
-    """Returns faces as careless exports have them, and what was done."""
+    """Returns faces as careless exports leave them, and the name of the damage."""
     damage = str(
         random.choice(["none", "none", "inverted", "mirrored", "mixed", "doubled", "twice"])
     )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Pages of a viewer in headless Chromium, which ask this program what to draw, and tell it."""
+"""Pages of a viewer in headless Chromium, which get tasks from this program and return results."""
 
 import http.server
 import json
@@ -23,9 +23,9 @@ def ask(page: str, request: Any, folders: dict[str, Path], timeout: float) -> An
     """Opens a page of this folder, and returns its answer.
 
     Args:
-        page: The name of its file.
-        request: What the page gets.
-        folders: What it can read: folders by the first part of a URL.
+        page: Its file name.
+        request: The value passed to the page.
+        folders: The readable folders, by the first part of a URL.
         timeout: In seconds.
 
     Raises:

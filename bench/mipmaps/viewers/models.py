@@ -6,7 +6,7 @@ Usage: blender --background --python-exit-code 1 --python bench/mipmaps/viewers/
        (--help lists the options, after --)
 
 Models are imported by Blender's own importers, and exported by its glTF exporter: MODEL.plain.glb
-without mipmaps, MODEL.fitted.glb with those of the extension's defaults, and MODEL.views.glb with
+without mipmaps, MODEL.fitted.glb with the extension's default mipmaps, and MODEL.views.glb with
 Fit to Views. The extension has to be installed and enabled.
 """
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Exported models in three.js, in a headless Chromium: what its mipmaps show, and what ours show.
+"""Compares exported models in three.js, in a headless Chromium: its mipmaps, and ours.
 
 Usage: python3 bench/mipmaps/viewers/three_js.py [MODEL...] --modules FOLDER   (--help)
 
-FOLDER is a node_modules with three. The models are those of bench/mipmaps/viewers/models.py. Each
+FOLDER is a node_modules with three. bench/mipmaps/viewers/models.py writes the models. Each
 turns before a fixed camera, its base color not lit, by one lookup a pixel with the mipmaps that
 three.js makes of the exported PNG file, and with those that the exported KTX 2 file holds. Errors
 are those to the mean of 8 x 8 pixels without mipmaps, over all pixels that differ from the
@@ -77,7 +77,7 @@ def task(
     nearest: bool = False,
     multisamples: int = 4,
 ) -> dict[str, Any]:
-    """What to draw: a model of one kind in `frames` steps of a turn, `side` pixels wide.
+    """Returns a drawing task: a model of one kind in `frames` steps of a turn, `side` pixels wide.
 
     Args:
         model: Its name.
@@ -102,7 +102,7 @@ def task(
 def drawn(
     tasks: list[dict[str, Any]], modules: Path, models: Path, *, page: str = "three_js.html"
 ) -> dict[str, Any]:
-    """What a viewer answers: its `revision`, and `results`, one a task."""
+    """Returns a viewer's answer: its `revision`, and `results`, one per task."""
     answer: dict[str, Any] = ask(
         page, {"tasks": tasks}, {"modules": modules, "models": models}, timeout=900
     )
@@ -121,7 +121,7 @@ def _encoded(frames: np.ndarray) -> np.ndarray:
 
 
 def _errors(frames: np.ndarray, true: np.ndarray) -> tuple[float, float]:
-    """The root mean square error of what is seen, as encoded, and that of its changes."""
+    """The root mean square error of the encoded visible pixels, and of their changes."""
     covered = np.abs(true - true[0, 0, 0]).max(axis=3) > 1e-3
     difference = _encoded(frames) - _encoded(true)
     both = covered[1:] & covered[:-1]

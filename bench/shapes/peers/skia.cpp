@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Skia through skia-python, in a Python inside of this process: an A8 surface. A call is one
-// drawPath; what Python adds to it is below a microsecond. PYTHONPATH says where skia is.
+// drawPath; Python adds less than a microsecond. PYTHONPATH says where skia is.
 #include <pybind11/embed.h>
 
 #include "bench/shapes/rasterizers.h"

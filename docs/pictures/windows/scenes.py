@@ -296,7 +296,7 @@ def show_image(shown: Photograph) -> Iterator[float]:
 
 
 def show_levels(shown: Photograph) -> Iterator[float]:
-    """The same with the preview of a level."""
+    """The Image editor with the preview of a level."""
     yield from show_image(shown)
     settings = bpy.context.window_manager.prefilter_view
     settings.mip_value, settings.use_wipe, settings.wipe = 4.0, True, 0.4
@@ -306,7 +306,7 @@ def show_levels(shown: Photograph) -> Iterator[float]:
 
 
 def show_weights(shown: Photograph) -> Iterator[float]:
-    """The same with the weights of its texels."""
+    """The Image editor with the weights of the image's texels."""
     yield from show_image(shown)
     with inside(largest_area()):
         bpy.ops.prefilter.show_weights()
@@ -494,7 +494,7 @@ def show_gltf(shown: Photograph) -> Iterator[float]:
 
 
 def show_on_model(shown: Photograph) -> Iterator[float]:
-    """The demo's monkey with levels as from a distance, those of Box left of the line."""
+    """The demo's monkey with levels as from a distance, Box on the left of the line."""
     obj = demo_scene.add_monkey()
     demo_scene.add_material(obj, demo_scene.new_image(demo_scene.paint(demo_scene.read_model(obj))))
     obj.select_set(True)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Curve and text objects as closed contours, against what Blender itself evaluates them to."""
+"""Curve and text objects as closed contours, against Blender's own evaluation."""
 
 import itertools
 import math
@@ -114,7 +114,7 @@ def test_splines_that_fill_nothing(read):
 
 
 def test_open_splines_are_left_out_as_blender_leaves_them_out():
-    """What Blender fills: closed splines, by the even-odd rule, whatever their direction."""
+    """Blender fills closed splines by the even-odd rule, whatever their direction."""
     obj = outlines.curve()
     obj.data.fill_mode = "BOTH"
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What images are to shaders, through the nodes that people and importers put between them."""
+"""Roles of images in shaders, through the nodes that people and importers put between them."""
 
 import bpy
 import pytest

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What nodes make of texels, compared with what Cycles bakes of the same nodes."""
+"""Nodes as functions of texels, compared with Cycles's bakes of the same nodes."""
 
 import bpy
 import numpy as np
@@ -21,11 +21,11 @@ def choices(kind, name, *left_out):
 MATH = choices("Math", "operation")
 VECTORS = choices("VectorMath", "operation", "FACEFORWARD", "REFRACT", "PROJECT")
 BLENDS = choices("Mix", "blend_type", "HUE", "SATURATION", "COLOR", "VALUE")
-"""All but those that are said to be ignored."""
+"""All operations except the documented exceptions."""
 
 
 class Chain:
-    """A material whose emission is what nodes make of an image."""
+    """A material that emits an image changed by nodes."""
 
     def __init__(self):
         picture = scenes.image("Texels", scenes.noise(SIDE, SIDE), colorspace="Non-Color")
@@ -62,7 +62,7 @@ class Chain:
         return made.outputs[0]
 
     def baked(self):
-        """Returns what Cycles makes of it, texel by texel."""
+        """Returns Cycles's bake of it, texel by texel."""
         scene = bpy.context.scene
         scene.render.engine, scene.cycles.samples = "CYCLES", 1
         scene.cycles.device, scene.cycles.use_denoising = "CPU", False

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs in a Blender with a window: presses keys, those at first and one assigned to a button.
+"""Runs in a Blender with a window: presses the default keys and one assigned to a button.
 
 Usage: blender --factory-startup --enable-event-simulate --python keys_session.py -- RESULT.json
 """
@@ -40,7 +40,7 @@ def session() -> Iterator[None]:
 
 
 def clashes() -> dict[str, list[str]]:
-    """Returns what Blender's own keymaps have at our keys, by keymap and key."""
+    """Returns the entries of Blender's own keymaps at our keys, by keymap and key."""
     ours = [(one.idname, one) for keymap in keymaps("addon") for one in keymap.keymap_items]
     ours = [one for name, one in ours if name.startswith("prefilter.")]
     found["keys"] = len(ours)

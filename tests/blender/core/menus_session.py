@@ -75,7 +75,7 @@ def note_problems() -> None:
 
 
 class Reports:
-    """What Blender's Info editor lists: the reports of all operators, errors or not."""
+    """The list of Blender's Info editor: the reports of all operators, errors or not."""
 
     def __init__(self, stage: Stage) -> None:
         """Makes the smallest area the editor."""
@@ -145,7 +145,7 @@ def answered(stage: Stage, case: Case) -> Iterator[None]:
 
 
 def dropped(stage: Stage) -> Iterator[None]:
-    """Does what Blender does when a file of each extension is dropped that a handler names."""
+    """Simulates the drop of a file of each extension that a handler names."""
     for handler in entries.handlers():
         operator = entries.operator_of(handler.bl_import_operator)
         for extension in handler.bl_file_extensions.split(";"):

@@ -58,7 +58,7 @@ def session() -> Iterator[None]:
 
 
 def by_mouse(stage: Stage) -> Iterator[None]:
-    """Queues two bakes and a voxelize; pauses what runs, cancels what waits and then what runs."""
+    """Queues two bakes and a voxelize; pauses the running job, then cancels all."""
     without_objects()
     for i, name in enumerate(("First", "Second")):
         scenes.textured_quad(scenes.image(name, scenes.noise(64, 64))).location.x = 3.0 * i

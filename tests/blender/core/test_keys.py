@@ -12,7 +12,7 @@ SESSION = Path(__file__).with_name("keys_session.py")
 
 
 def test_keys_clash_with_none_of_blenders(found):
-    """In all keymaps that come with Blender."""
+    """Compares with all keymaps that come with Blender."""
     assert found["keys"] == 9
     assert found["clashes"] == {}
 

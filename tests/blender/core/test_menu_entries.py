@@ -66,7 +66,7 @@ def area():
 
 @LONG
 def test_menu_entries_work(area, tmp_path):
-    """Without a window, too."""
+    """Menu entries also work without a window."""
     offered, silent = entries.calls(area)
     assert not silent
     for call in offered:
@@ -119,7 +119,7 @@ def own_ancestors(panel):
 
 @pytest.mark.parametrize("kind", ["PREFILTER_FH_points", "PREFILTER_FH_svg"])
 def test_file_handlers_work(kind, tmp_path):
-    """Blender looks a file's last extension up among those of handlers: it is one of these."""
+    """Blender compares a file's last extension with the handlers', and one of these matches."""
     handler = getattr(bpy.types, kind)
     operator = entries.operator_of(handler.bl_import_operator)
     for extension in handler.bl_file_extensions.split(";"):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Options: what one declaration makes of properties, flags, checks and tables."""
+"""Options: properties, flags, checks and tables from one declaration."""
 
 import argparse
 import math

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The queue, mostly in a window that nobody sees: what waits has its turn, pauses, is canceled."""
+"""The queue, mostly in an unseen window: waiting jobs get their turn, pause, and are canceled."""
 
 import json
 from pathlib import Path

@@ -86,7 +86,7 @@ def unfold_import() -> None:
 
 
 def pressed_in_browser(name: str) -> Iterator[None]:
-    """Clicks a setting near the end of those beside the files."""
+    """Clicks a setting near the end of the list beside the files."""
     yield from until(lambda: windows.browser() is not None)
     browser = windows.browser()
     assert browser is not None

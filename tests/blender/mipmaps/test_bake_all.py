@@ -286,7 +286,7 @@ def test_patterns_of_output(addon, output, expected):
 
 
 def test_a_manifest_of_the_files(model, tmp_path):
-    """Sizes are those of the files, which are stretched where blocks need it."""
+    """Reported sizes match the files, which are stretched where blocks need it."""
     gltf_files.write_png(tmp_path / "albedo.png", scenes.noise(10, 18)[..., :3])
     listing = tmp_path / "out" / "textures.json"
     result = run("bake", model, "--all", "--output", tmp_path / "out" / "t", "--manifest", listing)
@@ -516,7 +516,7 @@ def test_instances_and_several_uv_maps(tmp_path):
 
 @pytest.mark.parametrize("ending", [".obj", ".fbx", ".glb", ".usdc", ".usda", ".usdz"])
 def test_formats_of_models(tmp_path, ending):
-    """What Blender exports is found again by every importer."""
+    """Every importer finds the images of Blender's exports."""
     if ending.startswith(".usd") and not bpy.app.build_options.usd:
         pytest.skip("this Blender was built without USD")
     gltf_files.write_png(tmp_path / "paint.png", scenes.noise(8, 8)[..., :3])
@@ -565,7 +565,7 @@ def test_a_model_without_images(tmp_path):
     ],
 )
 def test_gathered_models(textured, tmp_path, name):
-    """The pictures that are there are baked, and those that are not are named."""
+    """Existing pictures are baked, and missing ones are named."""
     folder = (textured / name).parent
     there = {path.stem for path in folder.iterdir() if path.suffix in {".png", ".jpg"}}
     result = run(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The command `bake --all` to files: with what nodes make of images, a file for each role."""
+"""The command `bake --all` to files: nodes are applied, and each role gets a file."""
 
 import bpy
 import numpy as np
@@ -58,7 +58,7 @@ def test_colors_are_changed_as_light(tmp_path):
     changed = multiplied(tree, inverted(tree, color))
     tree.links.new(changed, principled(tree).inputs["Base Color"])
     baked(tmp_path)
-    # What multiplies just before the shader is a factor of the material.
+    # A multiplication just before the shader is a factor of the material.
     expected = scenes.to_srgb(1 - scenes.to_linear(pixels))
     np.testing.assert_allclose(level_0(tmp_path), expected, atol=0.51 / 255)
 
@@ -95,7 +95,7 @@ def test_other_nodes_are_named(tmp_path):
 
 
 def test_a_color_that_is_a_normal_map_too_has_two_files(tmp_path):
-    """Each is that of an image which is one of both alone."""
+    """Each file equals that of an image with one of the roles alone."""
     _, tree, color = scene("sRGB")
     tree.links.new(color, principled(tree).inputs["Base Color"])
     result, files = baked(tmp_path, ".dds")

@@ -38,7 +38,7 @@ def bake(model, folder, *arguments):
 
 
 def images(tasks):
-    """Returns what each task bakes."""
+    """Returns the images that each task bakes."""
     assert [task["task"] for task in tasks] == list(range(1, len(tasks) + 1))
     return [[one["image"] for one in task["images"]] for task in tasks]
 
@@ -48,7 +48,7 @@ def test_tasks_make_what_the_whole_makes(model, tmp_path, kind):
     flags = ("--format", kind)
     whole = bake(model, tmp_path / "whole", *flags)
     found = run("bake", model, "--all", "--output", tmp_path / "tasks", *flags, "--list", "--json")
-    # In this process Python's own lines of the importer are here too.
+    # In this process the importer's output from Python comes first.
     tasks = json.loads(found.stdout.splitlines()[-1])["tasks"]
     assert sorted(map(sorted, images(tasks))) == [["albedo.png"], ["glow.png"], list(PAIR)]
     made: dict[str, bytes] = {}

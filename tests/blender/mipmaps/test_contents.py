@@ -81,7 +81,7 @@ def test_normal_levels_have_the_length_1(bake):
 
 
 def test_data_shortens_normals(bake):
-    """What "normal" is for: as plain data, the same map loses length."""
+    """Unlike the content "normal", plain data loses length in the same map."""
     image = scenes.image("Bumps", bumps(16, 16), colorspace="Non-Color")
     bake(image, [scenes.textured_quad(image)], content="data")
     assert np.linalg.norm(vectors_of("Bumps.mip04")) < 0.95
@@ -422,7 +422,7 @@ def test_color_that_is_data_too_is_written_as_color(bake, tmp_path):
 @pytest.mark.parametrize("alpha_mode", ["CHANNEL_PACKED", "NONE"])
 @pytest.mark.parametrize("filter", ["box", "pam-bilinear"])
 def test_packed_channels_are_independent(bake, alpha_mode, filter):
-    """The same colors with another fourth channel give the same colors."""
+    """The fourth channel does not change the colors."""
     values = scenes.noise(8, 8, alpha=True)
     other = values.copy()
     other[..., 3] = scenes.noise(8, 8, seed=9)[..., 0]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What Blender's glTF exporter writes with fitted mipmaps, read back by its parts."""
+"""Files of Blender's glTF exporter with fitted mipmaps, read back by their parts."""
 
 import io
 import json
@@ -270,7 +270,7 @@ def test_sides_become_multiples_of_4(tmp_path):
 
 
 def test_alpha_is_straight_and_uvs_are_under_a_transform(tmp_path):
-    """Colors are weighted by alpha, and the levels are those of the transformed UVs."""
+    """Colors are weighted by alpha, and the levels follow the transformed UVs."""
     cube = model(mask=True)
     tree = cube.active_material.node_tree
     nodes = [node for node in tree.nodes if node.type == "TEX_IMAGE"]
@@ -393,7 +393,7 @@ def test_the_command_reports_images_that_stay(tmp_path):
 
 
 def uastc(path, levels, encoding, **options):
-    """Returns the bytes of a file as an export has it."""
+    """Returns the bytes of an exported file."""
     more = {"encoding": encoding, "supercompression": "zstd", **options}
     prefilter.write_ktx2(path, levels, format="uastc", **more)
     return path.read_bytes()
@@ -502,7 +502,7 @@ def test_a_color_that_is_a_normal_map_too_is_two_textures(tmp_path, ending):
 
 
 def test_one_image_with_and_without_alpha_is_two_textures(tmp_path):
-    """Where alpha does not count, transparent texels have colors that are seen."""
+    """If alpha is ignored, the colors of transparent texels are visible."""
     pixels = scenes.noise(32, 32, alpha=True)
     first = painted("Leaf", pixels)
     second = scenes.cube(bpy.data.images["Leaf"])

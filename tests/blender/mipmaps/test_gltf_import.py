@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What Blender's glTF importer makes of textures that are KTX 2 files."""
+"""Textures in KTX 2 files, imported by Blender's glTF importer."""
 
 import json
 import struct

@@ -89,7 +89,7 @@ def test_a_partial_factor_is_reported(painted):
 
 
 def test_gloss_becomes_roughness(painted):
-    """The second channel has it in glTF files."""
+    """glTF files store roughness in the second channel."""
 
     def build(tree, color):
         apart, node = tree.nodes.new("ShaderNodeSeparateColor"), tree.nodes.new("ShaderNodeMath")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Levels for renderers that look once a pixel, and those that average many lookups."""
+"""Levels for renderers with one lookup per pixel, and for those that average many."""
 
 import bpy
 import numpy as np

@@ -176,7 +176,7 @@ def test_plot(blend, tmp_path):
 
 
 def test_reader(blend, tmp_path):
-    """Without --filters, the plot leaves out the filter that such a reader does not go with."""
+    """Without --filters, the plot leaves out the filter that does not work with this reader."""
     table, target = tmp_path / "error.csv", tmp_path / "out.tif"
     result = run("plot", blend, "--reader", "srgb-after", "--table", table)
     assert result.returncode == 0, result.stderr

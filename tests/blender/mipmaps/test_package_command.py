@@ -10,7 +10,7 @@ from prefilter.commands import program
 from prefilter.workflows import mesh_files, picture_files
 
 BAKE = ("--wrap", "repeat")
-"""What OpenImageIO puts into TIFF files."""
+"""The wrap mode that OpenImageIO writes into TIFF files."""
 
 
 @pytest.fixture

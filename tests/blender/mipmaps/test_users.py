@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which objects a bake looks at: all that show the image, or those that are selected."""
+"""The objects that a bake uses: all that show the image, or the selected ones."""
 
 import bpy
 import numpy as np

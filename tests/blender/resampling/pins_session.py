@@ -114,7 +114,7 @@ def kept(stage: Stage) -> Iterator[None]:
 
 
 def anew(stage: Stage) -> Iterator[None]:
-    """Straightens the picture, and drags corners of the result: they are those of the source."""
+    """Straightens the picture, and drags corners of the result, which move the source's corners."""
     settings().warp = "rectify"
     yield from started(stage)
     with bpy.context.temp_override(**stage.override):

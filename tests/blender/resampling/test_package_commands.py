@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The package's commands `resize` and `resample` write the same bytes as those in Blender."""
+"""The package's commands `resize` and `resample` write the same bytes as Blender's commands."""
 
 import re
 

@@ -77,7 +77,7 @@ def test_from_the_front_any_lens_will_do(proportions, roll):
 
 @pytest.mark.parametrize("pose", [{"yaw": 35}, {"pitch": 40}, {"yaw": 35, "aside": (0.3, 0.5)}])
 def test_a_level_camera_leaves_the_lens_open(proportions, pose):
-    """One vanishing point is at infinity: the proportions are those of a usual lens."""
+    """One vanishing point is at infinity: the proportions fit a usual lens."""
     usual = proportions(seen(4 / 3, focal=0.65, **pose), WIDTH, HEIGHT)
     assert not usual.is_certain
     assert usual.aspect == pytest.approx(4 / 3, rel=1e-6)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where an image goes in its result."""
+"""The placement of an image in its result."""
 
 import math
 

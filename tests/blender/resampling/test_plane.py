@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The preview plane: what editors draw, against samples taken without a graphics card."""
+"""The preview plane: the editors' drawing, against samples taken without a graphics card."""
 
 from pathlib import Path
 

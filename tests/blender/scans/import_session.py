@@ -82,7 +82,7 @@ def imported(stage: Stage, **options: object) -> Iterator[None]:
 
 
 def dropped(stage: Stage) -> Iterator[None]:
-    """Does what Blender does when files are dropped, and chooses from the menu by its letters."""
+    """Simulates a drop of files, and chooses from the menu by its letters."""
     handler = bpy.types.PREFILTER_FH_points
     name = handler.bl_import_operator.partition(".")[2]
     for letter in "IR":

@@ -115,7 +115,7 @@ def test_point_clouds(tmp_path):
 
 
 def test_outliers_of_all_scans_together():
-    """What one scan alone has is none where another one is around it."""
+    """An outlier of one scan is none if points of another one surround it."""
     positions = clouds.torus(4_000)[0]
     first = clouds.scan(positions[:3_990], name="First")
     second = clouds.scan(np.concatenate([positions[3_990:], [(3.0, 3.0, 3.0)]]), name="Second")

@@ -85,7 +85,7 @@ def test_points_without_colors_have_no_material(torus, tmp_path):
 
 
 def test_points_are_rendered_in_their_colors(torus, tmp_path):
-    """By Cycles: red rises from left to right, green from front to back."""
+    """Cycles renders red rising from left to right, green from front to back."""
     read(torus.path)
     picture = rendered(tmp_path)
 
@@ -179,7 +179,7 @@ def test_far_from_the_origin(torus, tmp_path, capfd):
 
 
 def test_offsets_are_round(torus, tmp_path):
-    """To as many digits as the extent has; and points a few hundred extents away are far."""
+    """Offsets are rounded to the extent's digits; points a few hundred extents away are far."""
     wide = clouds.file(tmp_path / "Wide.xyz", 400 * torus.positions + [637_179, 849_497, 431])
     assert list(read(wide)["scan_offset"]) == [637_000, 849_000, 0]
     near = clouds.file(tmp_path / "Near.xyz", torus.positions + np.array([200, 0, 0]))

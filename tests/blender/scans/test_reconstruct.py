@@ -314,7 +314,7 @@ def test_inward_normals(capfd):
 
 
 def test_normals_face_the_scanner():
-    """Where it is known, or at the origin of the scan."""
+    """The scanner is at its known position, or at the origin of the scan."""
     points, _ = clouds.torus()
     scan = clouds.scan(points)
     reconstruct(points="keep", direction="viewpoint")
@@ -457,7 +457,7 @@ def test_trimming_without_a_new_run():
     assert clouds.vertices(made)[:, 2].max() < 0.1 + 4 * CELL
     left = np.empty(len(made.data.vertices), np.float32)
     made.data.attributes["distance"].data.foreach_get("value", left)
-    # What closes small holes is kept up to 4.
+    # Triangles that close small holes are kept up to 4.
     assert 1.49 < left.max() < 4
     with pytest.raises(RuntimeError, match="would be left"):
         bpy.ops.prefilter.trim_reconstruction(limit=0.0, hole=0.0)

@@ -127,7 +127,7 @@ def svg(stage: Stage) -> Iterator[None]:
 
 
 def dropped(stage: Stage, path: Path) -> Iterator[None]:
-    """Does what Blender does when a file is dropped: it names the file, and no settings."""
+    """Simulates the drop of a file: Blender passes the file, and no settings."""
     handler = bpy.types.PREFILTER_FH_svg
     settings = bpy.context.scene.prefilter_rasterize
     settings.resolution, settings.width, settings.height = "size", 48, 40

@@ -202,7 +202,7 @@ def test_svg_mixes_as_browsers_do_or_as_light_does(tmp_path):
         bpy.ops.prefilter.rasterize_svg(filepath=str(path), width=22, height=14, margin=3, **more)
         (made,) = set(bpy.data.images) - before
         values = np.rint(scenes.pixels(made.name) * 255)
-        # What leaves the page does not show in the margin.
+        # Parts outside the page do not show in the margin.
         expected = np.zeros((14, 22))
         expected[3:11, 3:19] = 255
         np.testing.assert_array_equal(values[..., 3], expected)

@@ -63,7 +63,7 @@ def test_files_contain_no_time(scene, tmp_path, kind):
     bake()
     (path,) = cycles.cache_files(tmp_path)
     date = re.compile(rb"\d{4}:\d\d:\d\d \d\d:\d\d:\d\d")
-    # Blender's: that of the image, in each level.
+    # Blender dates each level like the image.
     assert {found[:10] for found in date.findall(path.read_bytes())} == {b"2020:09:13"}
 
 

@@ -246,7 +246,7 @@ def test_a_boolean_sums_up():
 
 
 def test_the_volume_is_that_of_the_surface():
-    """Where faces coincide cells keep a film, which the surface has not."""
+    """Cells keep a film where faces coincide, but the surface does not."""
     cubes = [bodies.cube(size=1.0), bodies.cube(size=1.0)]
     for cube, side in zip(cubes, (4.0, 2.0), strict=True):
         cube.data.transform(Matrix.Diagonal((side, side, 1.0, 1.0)))

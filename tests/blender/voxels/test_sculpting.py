@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Voxelizing in Sculpt Mode, in a window that nobody sees: what undo and redo come to."""
+"""Voxelizing in Sculpt Mode, in an unseen window: the results of undo and redo."""
 
 from pathlib import Path
 

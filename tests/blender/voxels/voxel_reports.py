@@ -10,7 +10,7 @@ PACKAGE = "bl_ext.user_default.prefilter"
 
 
 def outcome(*objects, **options):
-    """Returns what voxelizing ends with."""
+    """Returns the outcome of voxelizing."""
     choices = importlib.import_module(f"{PACKAGE}.voxels.choices")
     voxelization = importlib.import_module(f"{PACKAGE}.voxels.voxelization")
     command = importlib.import_module(f"{PACKAGE}.core.command")
@@ -20,7 +20,7 @@ def outcome(*objects, **options):
 
 
 def rows(line):
-    """Returns what follows the name of the object."""
+    """Returns the entries after the name of the object."""
     return line.split(": ", 1)[1].split("; ")
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files that are put into place: what may be replaced, and sets that are written whole."""
+"""Staged files: permitted replacements, and sets that are written as a whole."""
 
 import os
 import stat

@@ -58,7 +58,7 @@ def session() -> Iterator[None]:
 
 
 def shown(stage: Stage) -> Iterator[None]:
-    """Shows the coarsest levels, and those of a distance."""
+    """Shows the coarsest levels, and the levels of a distance."""
     view = settings()
     view.use_wipe, view.compare, view.choice, view.mip_value = True, "box", "level", 6.0
     yield from stage.redrawn()

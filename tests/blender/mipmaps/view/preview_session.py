@@ -136,7 +136,7 @@ def captions(stage: Stage) -> Iterator[None]:
     white = scenes.image("White", np.ones((8, 8, 4), np.float32))
     scenes.textured_quad(white, "white")
     stage.area.spaces.active.image = white
-    # What panels know of a scene may be a moment old.
+    # Panels' data on a scene may be a moment old.
     yield from until(lambda: _may_preview(stage))
     with bpy.context.temp_override(**stage.override):
         bpy.ops.image.view_all(fit_view=True)

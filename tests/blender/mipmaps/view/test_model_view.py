@@ -10,12 +10,12 @@ import scenes
 
 SESSION = Path(__file__).with_name("model_view_session.py")
 BYTE = 6.0
-"""What software rendering rounds."""
+"""Rounding of software rendering, in byte values."""
 
 
 @pytest.fixture
 def expected(found):
-    """Returns the colors of the coarsest levels: those of Box, and of the filter of the bake."""
+    """Returns the colors of the coarsest levels, by Box and by the filter of the bake."""
     levels = found["levels"]
     assert list(levels) == ["pam-bilinear", "box"]
     return [255 * scenes.to_srgb(np.array(levels[name])) for name in ("box", "pam-bilinear")]

@@ -86,7 +86,7 @@ def displayed(light, x, y, channels):
 
 
 def places(shown, name, size):
-    """Returns the coordinates of pixels, and a mask of those that lie well in a texel of level 0.
+    """Returns the coordinates of pixels, and a mask of pixels well inside a texel of level 0.
 
     Labels are below the image or on its lowest rows.
     """
@@ -194,7 +194,7 @@ def test_uvs_stay_in_front(shown, stored):
 
 @pytest.mark.parametrize("reader", ["linear", "srgb-after"])
 def test_exact_where_nothing_is_rounded(shown, stored, reader):
-    """In a framebuffer of floats only the 16-bit floats of the textures are left."""
+    """In a framebuffer of floats, only the textures' 16-bit floats round."""
     made = {
         which: levels(stored["byte"], "byte", which, reader) for which in ("tent", "pam-bilinear")
     }
@@ -251,7 +251,7 @@ def preview_of(addon, name):
 
 
 def test_computes_with_the_settings_of_the_bake(addon):
-    """Without a window: nothing is drawn, but levels are there."""
+    """Without a window nothing is drawn, but levels exist."""
     image = scenes.image("Paint", scenes.noise(8, 4))
     scenes.textured_quad(image)
     bpy.context.scene.prefilter_bake.filter = "pam-box"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What results keep of an object besides its shape: modifiers, and marks of edges and vertices."""
+"""Data that results keep besides the shape: modifiers, and marks of edges and vertices."""
 
 import bodies
 import bpy
@@ -204,7 +204,7 @@ def values_of(attribute):
 
 
 def others_of(data_type):
-    """Returns what elements have that have not the value of their type: 0, or no turn."""
+    """Returns the neutral value of a type: 0, or no rotation."""
     others = np.zeros(np.size(VALUES[data_type]))
     others[0] = data_type == "QUATERNION"
     return others

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.voxelize` in Sculpt Mode: masks and face sets stay, and what cannot be is refused."""
+"""`prefilter.voxelize` in Sculpt Mode: masks and face sets stay, and Multires is refused."""
 
 import bodies
 import bpy
@@ -50,7 +50,7 @@ def test_masks_and_face_sets_are_kept():
 
 @pytest.mark.parametrize("mode", ["SCULPT", "OBJECT"])
 def test_symmetry_is_kept(mode):
-    """And what Voxel Remesh is set to, as both are settings of the mesh."""
+    """Symmetry and Voxel Remesh's settings stay, as both are settings of the mesh."""
     ball = sculpted()
     bpy.ops.object.mode_set(mode=mode)
     ball.data.use_mirror_x, ball.data.use_mirror_z = True, True
