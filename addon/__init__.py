@@ -9,10 +9,10 @@ from importlib import import_module
 
 SUBJECTS = (
     "welcome",
-    "mipmaps",
+    "textures",
     "texture_cache",
-    "resampling",
-    "scans",
+    "images",
+    "points",
     "shapes",
     "voxels",
     "comparison",
@@ -50,13 +50,13 @@ with _collector_paused():
     from .core.keys import Keys
     from .core.registration import registration
     from .manual import Manual
-    from .mipmaps.gltf.hooks import (
+    from .preferences import SubjectPreferences
+    from .textures.gltf.hooks import (
         glTF2_pre_export_callback,
         glTF2ExportUserExtension,
         glTF2ImportUserExtension,
     )
-    from .mipmaps.gltf.panel import draw_export, draw_import
-    from .preferences import SubjectPreferences
+    from .textures.gltf.panel import draw_export, draw_import
 
     _packages = [import_module(f".{name}", __package__) for name in SUBJECTS]
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from bench.field.runs import Run
-from bench.scans import sheet as surfaces
+from bench.points import sheet as surfaces
 
 SIDE = 160
 CAPTION = 14

@@ -9,7 +9,7 @@ from . import Measurement, run
 
 ROOT = Path(__file__).resolve().parents[2]
 IN_CPP = ROOT / "build/bench/prefilter_bake_file"
-IN_PYTHON = ROOT / "bench/mipmaps/bake_file.py"
+IN_PYTHON = ROOT / "bench/textures/bake_file.py"
 
 
 class FileToFile:

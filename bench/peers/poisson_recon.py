@@ -68,7 +68,7 @@ class PoissonRecon:
         """Asks a separate process, because this one's memory would count as the programs'."""
         code = (
             "import sys; import numpy as np; from pathlib import Path; "
-            "from bench.scans.ply import vertex_values; "
+            "from bench.points.ply import vertex_values; "
             "print(np.median(vertex_values(Path(sys.argv[1]), 'value')))"
         )
         command = [sys.executable, "-c", code, str(self._target)]

@@ -55,7 +55,7 @@ def in_memory(points: str, keywords: Mapping[str, Any]) -> Callable[[], Any]:
     import numpy as np
     from prefilter import reconstruct
 
-    from bench.scans import ply
+    from bench.points import ply
 
     cloud, normals = (np.ascontiguousarray(part) for part in ply.read_points(Path(points)))
     return lambda: reconstruct(cloud, normals, **keywords)
@@ -70,7 +70,7 @@ def main() -> None:
         return
     sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
     made = clocked(in_memory(points, keywords))
-    from bench.scans import ply
+    from bench.points import ply
 
     ply.write_mesh(Path(target), made[0], made[1])
 

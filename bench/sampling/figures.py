@@ -20,7 +20,7 @@ import prefilter
 from numpy.typing import NDArray
 
 from bench.report import Report, add_json_option
-from bench.textures import textures
+from bench.texture_files import textures
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs" / "pictures"))

@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "pictures"
 from resize import drawn
 
 from bench.report import Report, add_json_option
-from bench.textures import textures
+from bench.texture_files import textures
 
 ROOT = Path(__file__).resolve().parents[2]
 Array = NDArray[np.float32]

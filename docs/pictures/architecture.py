@@ -27,10 +27,10 @@ LAYERS: tuple[tuple[str, str, Sequence[Sequence[tuple[str, str]]]], ...] = (
         "#dcefe9",
         (
             (
-                ("mipmaps", "texture_cache"),
-                ("resampling", "shapes"),
+                ("textures", "texture_cache"),
+                ("images", "shapes"),
                 ("voxels", "comparison"),
-                ("scans", "welcome"),
+                ("points", "welcome"),
             ),
             (("bridge", "Blender \u2194 numpy"), ("core", "operators, options, queue")),
         ),

@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import scans
 from scans import HUES, Floats, Mesh, Subject, View, demo
 
-from bench.scans import ply, sets
+from bench.points import ply, sets
 from bench.voxels.meshes import Triangles
 
 DEPTH = 8

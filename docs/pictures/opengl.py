@@ -4,7 +4,7 @@
 
 usage: python3 opengl.py FOLDER [MODELS]    (with the package prefilter importable, and moderngl)
 
-MODELS is the folder that bench/mipmaps/opengl_models.py has filled. Leaves FOLDER/opengl.png.
+MODELS is the folder that bench/textures/opengl_models.py has filled. Leaves FOLDER/opengl.png.
 """
 
 import sys
@@ -14,8 +14,9 @@ import numpy as np
 from sheets import encoded, sheet
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from bench.mipmaps import opengl, opengl_renderer
-from bench.mipmaps.opengl_renderer import Model, Renderer, Texels, averaged
+from bench.texture_files.opengl_renderer import Model, Renderer, Texels, averaged
+
+from bench.texture_files import opengl, opengl_renderer
 
 MODEL, SIZE, ANGLE = "spot", 96, 0.35
 PART = (slice(44, 80), slice(28, 76))

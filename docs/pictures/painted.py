@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import demo_scene as demo
 import scans
 
-from bench.scans import sets
+from bench.points import sets
 from bench.voxels.meshes import Triangles
 
 PACKAGE = "bl_ext.user_default.prefilter"

@@ -29,8 +29,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import demo_scene as demo
 
 from bench.peers.poisson_recon import PoissonRecon
-from bench.scans import ply, sets
-from bench.scans import scans as range_scans
+from bench.points import ply, sets
+from bench.points import scans as range_scans
 from bench.voxels.meshes import Triangles
 
 Floats = NDArray[np.floating]

@@ -5,7 +5,7 @@
 usage: python3 viewers.py FOLDER MODULES [MODELS]
 
 MODULES is a node_modules with three, @babylonjs/core and @babylonjs/loaders; MODELS the folder that
-bench/mipmaps/viewers/models.py has filled, of the kinds plain and fitted. Leaves
+bench/textures/viewers/models.py has filled, of the kinds plain and fitted. Leaves
 FOLDER/viewers.png. Fails where a level of a texture has not arrived.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 from sheets import encoded, sheet
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from bench.mipmaps.viewers import three_js
+from bench.texture_files.viewers import three_js
 
 SHOWN = ("BoomBox", "DamagedHelmet", "Duck")
 SIDE, SCALE = 96, 4

@@ -30,21 +30,21 @@ SAME_IN_ANY_BLENDER = {
     "bridge/test_wipe_window.py",
     "core/test_jobs.py",
     "core/test_queue.py",
-    "mipmaps/test_bad_inputs.py",
-    "mipmaps/test_bake_tasks.py",
-    "mipmaps/test_contents.py",
-    "mipmaps/test_mipmap_commands.py",
-    "mipmaps/test_reader.py",
-    "mipmaps/test_seams.py",
-    "mipmaps/view/test_canvas.py",
-    "mipmaps/view/test_errors.py",
-    "resampling/test_perspective.py",
-    "resampling/test_pins.py",
-    "resampling/test_placement.py",
-    "resampling/test_resample_commands.py",
-    "resampling/test_resize_commands.py",
-    "resampling/test_sampling_table_command.py",
-    "scans/test_scan_commands.py",
+    "textures/test_bad_inputs.py",
+    "textures/test_bake_tasks.py",
+    "textures/test_contents.py",
+    "textures/test_mipmap_commands.py",
+    "textures/test_reader.py",
+    "textures/test_seams.py",
+    "textures/view/test_canvas.py",
+    "textures/view/test_errors.py",
+    "images/test_perspective.py",
+    "images/test_pins.py",
+    "images/test_placement.py",
+    "images/test_resample_commands.py",
+    "images/test_resize_commands.py",
+    "images/test_sampling_table_command.py",
+    "points/test_scan_commands.py",
     "shapes/test_shape_commands.py",
     "test_nothing_lost.py",
     "voxels/test_voxel_commands.py",
@@ -100,8 +100,8 @@ def bake(addon: Callable[[str], ModuleType]) -> Callable[..., Any]:
     """Returns a function that bakes with the settings given as keywords."""
 
     def run(image, objects=(), *, all_faces=False, progress=lambda _: True, **settings):
-        chosen = addon("mipmaps.choices").Settings(**settings)
-        bake_inputs = addon("mipmaps.bake_inputs")
+        chosen = addon("textures.choices").Settings(**settings)
+        bake_inputs = addon("textures.bake_inputs")
         request = bake_inputs.Request(
             image, list(objects), chosen, scenes.depsgraph(), all_faces=all_faces
         )

@@ -31,15 +31,15 @@ def defaults(function):
 @pytest.mark.parametrize(
     ("settings", "function", "least"),
     [
-        ("mipmaps.choices.Settings", prefilter.mipmaps, 5),
-        ("mipmaps.choices.Settings", prefilter.normal_mipmaps, 3),
-        ("mipmaps.choices.Settings", prefilter.keep_coverage, 2),
+        ("textures.choices.Settings", prefilter.mipmaps, 5),
+        ("textures.choices.Settings", prefilter.normal_mipmaps, 3),
+        ("textures.choices.Settings", prefilter.keep_coverage, 2),
         ("shapes.choices.RasterizeSettings", prefilter.rasterize, 3),
-        ("scans.choices.ScanSettings", prefilter.reconstruct, 8),
-        ("scans.choices.ScanSettings", prefilter.reconstruct_file, 8),
-        ("resampling.choices.ResizeSettings", prefilter.resize, 3),
-        ("resampling.choices.ResampleSettings", prefilter.resample, 4),
-        ("resampling.choices.TableSettings", prefilter.SamplingTable.build, 7),
+        ("points.choices.ScanSettings", prefilter.reconstruct, 8),
+        ("points.choices.ScanSettings", prefilter.reconstruct_file, 8),
+        ("images.choices.ResizeSettings", prefilter.resize, 3),
+        ("images.choices.ResampleSettings", prefilter.resample, 4),
+        ("images.choices.TableSettings", prefilter.SamplingTable.build, 7),
         ("voxels.choices.VoxelSettings", prefilter.voxelize, 2),
         ("voxels.choices.VoxelSettings", prefilter.Octree.contour, 2),
     ],
@@ -68,6 +68,6 @@ def test_defaults_agree(addon, settings, function, least):
 
 
 def test_the_format_of_texture_files(addon):
-    expected = addon("mipmaps.choices").Settings().texture_format
+    expected = addon("textures.choices").Settings().texture_format
     for write in (prefilter.write_dds, prefilter.write_ktx2):
         assert defaults(write)["format"] == expected

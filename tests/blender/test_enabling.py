@@ -17,7 +17,7 @@ AT_ENABLING = re.compile(
     | bridge(\.(files|editors|previews|views|wipe|image_operator))?
     | \w+ (\.(choices|properties|menus|(\w+_)?panels?|operators?|scene_cache)(\..*)?)?
     | \w+ (\.(importance|view|model)(\..*)?)?
-    | mipmaps\.gltf(\.(choices|properties|panel|hooks))?
+    | textures\.gltf(\.(choices|properties|panel|hooks))?
     """,
     re.VERBOSE,
 )
@@ -58,7 +58,7 @@ def loaded_at_enabling() -> set[str]:
 def test_only_what_is_needed_is_loaded():
     found = loaded_at_enabling()
     own = {name.removeprefix(PACKAGE).lstrip(".") for name in found if name.startswith(PACKAGE)}
-    assert {"core.operator", "mipmaps.choices"} <= own
+    assert {"core.operator", "textures.choices"} <= own
     wrong = {name for name in own if not AT_ENABLING.fullmatch(name) or WORK.fullmatch(name)}
     assert not wrong, f"import these in the functions that need them: {sorted(wrong)}"
     package = {name for name in found if re.match(r"prefilter\b", name)}

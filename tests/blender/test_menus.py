@@ -81,7 +81,7 @@ def test_the_menu_is_in_sight():
 def test_the_images_of_a_material(addon):
     material = bpy.data.materials.new("Wood")
     layout = Layout()
-    addon("mipmaps.menus")._draw_material_menu(
+    addon("textures.menus")._draw_material_menu(
         SimpleNamespace(layout=layout), SimpleNamespace(material=material, scene=bpy.context.scene)
     )
     assert layout.operators == ["prefilter.bake_model"]

@@ -64,7 +64,7 @@ def test_names_of_images_become_names_of_files(tmp_path, addon, name):
     """Every system allows the names, and they stay distinct."""
     image = bpy.data.images.new(name, 4, 4)
     bpy.data.images.new("other", 4, 4)
-    files = addon("mipmaps.file_names")
+    files = addon("textures.file_names")
     pattern = files.Pattern.of(str(tmp_path), ".exr")
     stem = os.path.basename(files.paths(pattern, [image])[0]).removesuffix(".exr")
     assert stem == addon("core.file_names").clean_name(stem)

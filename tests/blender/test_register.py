@@ -44,11 +44,11 @@ def test_unregister_is_symmetric():
 
 
 def test_settings_of_scene_operator_and_bake_agree(addon):
-    choices = addon("mipmaps.choices")
+    choices = addon("textures.choices")
     defaults = {**vars(choices.Settings()), **vars(choices.ResultSettings())}
     scene = bpy.context.scene.prefilter_bake
     operator = bpy.ops.prefilter.bake_mipmaps.get_rna_type().properties
-    for name in addon("mipmaps.properties").BakeProperties.__annotations__:
+    for name in addon("textures.properties").BakeProperties.__annotations__:
         assert getattr(scene, name) == defaults[name]
         assert operator[name].description
 

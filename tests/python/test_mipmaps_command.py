@@ -10,7 +10,7 @@ import numpy as np
 import prefilter
 import pytest
 from command_files import fails, noise, run, write_picture, write_quad
-from prefilter.options.mipmaps import FILTERS, TEXTURE_SPACE_FILTERS
+from prefilter.options.textures import FILTERS, TEXTURE_SPACE_FILTERS
 from prefilter.workflows import mesh_files
 from prefilter.workflows.up_to_date import fingerprint
 from texture_readers import read_dds, read_ktx2

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What bench/mipmaps/opengl.py takes for granted: lookups by OpenGL are those of its formulas."""
+"""What bench/textures/opengl.py takes for granted: lookups by OpenGL are those of its formulas."""
 
 import sys
 from pathlib import Path
@@ -12,8 +12,9 @@ pytest.importorskip("moderngl", reason="there is no moderngl to draw with")
 pytest.importorskip("scipy", reason="scipy finds charts")
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from bench.mipmaps import opengl_renderer
-from bench.mipmaps.opengl_renderer import Model, Renderer, averaged, in_one_piece
+from bench.texture_files.opengl_renderer import Model, Renderer, averaged, in_one_piece
+
+from bench.texture_files import opengl_renderer
 
 SIDE, SIZE = 64, 24
 # Mesa's lookups, not its queries, take 2^k (1 + m) to have the logarithm k + m, and half of that.

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import prefilter
 import pytest
-from prefilter.options.mipmaps import TEXTURE_FORMATS
+from prefilter.options.textures import TEXTURE_FORMATS
 from prefilter.textures.ktx2_metadata import read_metadata
 from texture_readers import FORMATS, read_dds, read_ktx2
 

@@ -11,8 +11,7 @@ from pathlib import Path
 import numpy as np
 import prefilter
 import pytest
-
-from bench.mipmaps.viewers import three_js
+from bench.texture_files.viewers import three_js
 
 MODULES = Path(os.environ.get("PREFILTER_NODE_MODULES", "node_modules"))
 

@@ -11,8 +11,8 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
 # Paths on the page are below one of these.
 FOLDERS = (
-    *(".", "native/prefilter", "native/python/prefilter", "addon", "addon/mipmaps", "native"),
-    *("addon/scans", "native/prefilter/points/scan", "native/prefilter/textures/blocks"),
+    *(".", "native/prefilter", "native/python/prefilter", "addon", "addon/textures", "native"),
+    *("addon/points", "native/prefilter/points/scan", "native/prefilter/textures/blocks"),
 )
 PATHS = sorted(set(re.findall(r"`([\w./]+\.(?:py|pyi|h|cpp|toml|txt))`", PAGE)))
 

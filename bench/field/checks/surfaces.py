@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.field import polygons, shapes
-from bench.scans import ply
+from bench.points import ply
 from bench.voxels import measures
 
 Floats = NDArray[np.float64]

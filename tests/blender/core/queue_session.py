@@ -66,7 +66,7 @@ def by_mouse(stage: Stage) -> Iterator[None]:
     stage.area.type = "IMAGE_EDITOR"
     yield from sidebar(stage, "Button")
     told = found["mouse"] = {"listed": [], "before": is_shown()}
-    with working_on("mipmaps.bake", "Bake", until_cancelled=False):
+    with working_on("textures.bake", "Bake", until_cancelled=False):
         stage.area.spaces.active.image = bpy.data.images["First"]
         yield from stage.redrawn()
         yield from clicked(stage.window, *button(stage, 0.3))
@@ -261,7 +261,7 @@ class BakePanel(_ButtonPanel, bpy.types.Panel):
 
     bl_idname = "TEST_PT_bake"
     bl_space_type = "IMAGE_EDITOR"
-    button = ("mipmaps.menus", "BAKE_BUTTON")
+    button = ("textures.menus", "BAKE_BUTTON")
 
 
 class VoxelizePanel(_ButtonPanel, bpy.types.Panel):

@@ -159,12 +159,12 @@ def click_after_esc(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[
     yield
     yield
     x, y = sidebar.x + sidebar.width // 3, sidebar.y + sidebar.height - 80
-    with working_on("mipmaps.bake", "Bake"):
+    with working_on("textures.bake", "Bake"):
         yield from clicked(window, x, y)
         yield from until(lambda: running(window))
         window.event_simulate(type="ESC", value="PRESS", x=x, y=y)
         yield from until(lambda: not running(window))
-    with working_on("mipmaps.bake", "Bake"):
+    with working_on("textures.bake", "Bake"):
         yield from clicked(window, x + 1, y)
         found["click_after_esc"] = running(window)
         window.event_simulate(type="ESC", value="PRESS", x=x, y=y)
@@ -176,7 +176,7 @@ def esc_asks(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
     core = importlib.import_module(f"{PACKAGE}.core.runs")
     seconds, core.ASKING_SECONDS = core.ASKING_SECONDS, 0.0
     told = found["asks"] = []
-    with working_on("mipmaps.bake", "Bake"):
+    with working_on("textures.bake", "Bake"):
         with bpy.context.temp_override(window=window, area=area, region=region(area, "WINDOW")):
             bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT")
         yield

@@ -7,8 +7,8 @@ import pytest
 
 PLACES = {
     ("shapes.choices", "FILTERS"): "raster",
-    ("resampling.choices", "FILTERS"): "resize",
-    ("resampling.choices", "TABLE_FILTERS"): "sampling",
+    ("images.choices", "FILTERS"): "resize",
+    ("images.choices", "TABLE_FILTERS"): "sampling",
 }
 
 
@@ -22,7 +22,7 @@ def test_every_filter_may_be_chosen_and_is_described(addon, place):
 
 
 def test_levels_have_the_same_labels(addon):
-    choices = addon("mipmaps.choices").FILTERS
+    choices = addon("textures.choices").FILTERS
     for one in prefilter.PIXEL_FILTERS:
         if "mipmap" in one.uses:
             assert choices[one.name].label == one.label

@@ -51,7 +51,7 @@ def saved_scan(tmp_path):
 
 
 def test_factory_settings_are_the_defaults(addon, preferences):
-    for where in ("preferences", "mipmaps.choices"):
+    for where in ("preferences", "textures.choices"):
         for name, default in asdict(addon(where).Preferences()).items():
             assert getattr(preferences, name) == default
     assert bpy.context.scene.prefilter_reconstruct.memory_limit == 0

@@ -17,13 +17,13 @@ from command_line import assert_fails, run
 from texture_readers import read_dds, read_ktx2
 
 KINDS = {
-    "bake": "mipmaps.properties.BAKE",
-    "model": "mipmaps.properties.MODEL",
+    "bake": "textures.properties.BAKE",
+    "model": "textures.properties.MODEL",
     "voxelize": "voxels.properties.VOXELIZE",
-    "reconstruct": "scans.properties.RECONSTRUCT",
+    "reconstruct": "points.properties.RECONSTRUCT",
     "rasterize": "shapes.properties.RASTERIZE",
-    "resize": "resampling.properties.RESIZE",
-    "resample": "resampling.properties.RESAMPLE",
+    "resize": "images.properties.RESIZE",
+    "resample": "images.properties.RESAMPLE",
 }
 FOLDER = Path(__file__).parents[3] / "addon/presets/prefilter"
 ZSTANDARD, UASTC = (

@@ -9,15 +9,15 @@ from functools import partial
 from pathlib import Path
 
 from ..files.staging import StagedFile, commit_all
-from ..options.mipmaps import Settings
+from ..options.textures import Settings
 from ..workflows import mesh_files, picture_files
 from ..workflows.files import engines, target_files, textures
-from ..workflows.mipmaps import checks, contents, levels, stretching
-from ..workflows.mipmaps.outputs import Outputs, stage_files, summary
-from ..workflows.mipmaps.source import Source
 from ..workflows.outcome import Outcome
 from ..workflows.picture import Encoding, Picture
 from ..workflows.progress import Progress, go_on, share
+from ..workflows.textures import checks, contents, levels, stretching
+from ..workflows.textures.outputs import Outputs, stage_files, summary
+from ..workflows.textures.source import Source
 from . import color_arguments
 
 _FILTERED = 0.9  # Progress once the levels are filtered.

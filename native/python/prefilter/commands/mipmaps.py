@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..options.flags import add_flags, given, tables
-from ..options.mipmaps import FILTERS, TEXTURE_SPACE_FILTERS, Settings
+from ..options.textures import FILTERS, TEXTURE_SPACE_FILTERS, Settings
 from ..workflows import mesh_extensions
 from ..workflows.files import target_files
 from ..workflows.up_to_date import KEY, LEVELS, fingerprint

@@ -11,12 +11,12 @@ from typing import Any
 
 from ..files.staging import check_target
 from ..options.flags import add_flags, given, tables
-from ..options.scans import ScanSettings
+from ..options.points import ScanSettings
 from ..points.extensions import POINT_EXTENSIONS
 from ..points.steps import STEPS, Steps
 from ..workflows.outcome import up_to_date
-from ..workflows.scans import STREAMED_TARGET, StepWork, Streaming
-from ..workflows.scans import options as scan_options
+from ..workflows.points import STREAMED_TARGET, StepWork, Streaming
+from ..workflows.points import options as scan_options
 from ..workflows.wording import either, listed
 from . import cli_common, outputs, tasks
 from .host import PLAIN, Host

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from ..options.flags import add_flags, given, tables
+from ..options.images import CORNERS, ResampleSettings
 from ..options.options import check
-from ..options.resampling import CORNERS, ResampleSettings
-from ..workflows.resampling.resampling import Resampling
+from ..workflows.images.resampling import Resampling
 from ..workflows.up_to_date import fingerprint
 from . import batch, cli_common, picture_arguments
 from .batch import Pair

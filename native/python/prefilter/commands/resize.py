@@ -7,8 +7,8 @@ from functools import partial
 from typing import Any
 
 from ..options.flags import add_flags, given, tables
-from ..options.resampling import ResizeSettings
-from ..workflows.resampling.resizing import Resizing
+from ..options.images import ResizeSettings
+from ..workflows.images.resizing import Resizing
 from . import batch, cli_common, picture_arguments
 from .batch import Pair
 from .host import PLAIN, Host

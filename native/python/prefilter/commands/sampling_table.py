@@ -10,8 +10,8 @@ from typing import Any
 
 from ..files.staging import check_target
 from ..options.flags import add_flags, given, tables
-from ..options.tables import TableSettings
-from ..workflows.resampling.table_making import ENDINGS, TableMaking
+from ..options.sampling import TableSettings
+from ..workflows.images.table_making import ENDINGS, TableMaking
 from ..workflows.wording import either
 from . import cli_common, outputs
 from .host import PLAIN, Host

@@ -335,5 +335,5 @@ def test_bc6h_warns_about_negative_values(bake, tmp_path):
 
 
 def test_every_format_but_the_smallest_can_be_chosen(addon):
-    offered = addon("mipmaps.choices").TEXTURE_FORMATS.keys() - {"auto", "blocks"}
+    offered = addon("textures.choices").TEXTURE_FORMATS.keys() - {"auto", "blocks"}
     assert offered == prefilter.TEXEL_FORMATS.keys() - {"r8", "rg8"}
