@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Points with normals of surfaces that are known."""
+"""Points with normals, sampled from known surfaces."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ class Cloud:
     Attributes:
         points: (n, 3).
         normals: (n, 3), outward.
-        distance: Of points, (m, 3), from the surface; positive outside.
+        distance: Returns the distances of points, (m, 3), from the surface; positive outside.
     """
 
     points: Array
@@ -43,7 +43,7 @@ def sphere(
 
 
 def torus(count: int, radius: float = 1.0, tube: float = 0.4, seed: int = 0) -> Cloud:
-    """Uniform over the area, by rejection."""
+    """Points of uniform density over the area, by rejection."""
     rng = np.random.default_rng(seed)
     u, v, w = rng.random((3, 3 * count))
     v *= 2 * np.pi

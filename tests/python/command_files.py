@@ -10,12 +10,12 @@ from prefilter.commands import program
 
 
 def run(*arguments: object) -> int:
-    """Runs the command in this Python."""
+    """Runs the command in this process."""
     return program.main([str(argument) for argument in arguments])
 
 
 def fails(capsys: pytest.CaptureFixture[str], status: int, *arguments: object) -> str:
-    """Runs what is to fail with a status, and returns the one line that says why."""
+    """Runs a command that must fail with `status`; returns its single error line."""
     capsys.readouterr()
     assert run(*arguments) == status
     told = capsys.readouterr().err
@@ -31,7 +31,7 @@ def noise(height: int, width: int, channels: int = 3, seed: int = 1) -> np.ndarr
 
 
 def write_picture(path: Path, pixels: np.ndarray, *, is_straight: bool = True) -> Path:
-    """Writes pixels, rows from the top, just as they are."""
+    """Writes pixels, rows from the top, without conversion."""
     oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, str(pixels.dtype).replace("float32", "float"))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Makes the modules beside the tests importable, wherever pytest is started."""
+"""Makes the modules beside the tests importable from anywhere, and selects tests."""
 
 import collections
 import os
@@ -109,8 +109,8 @@ SAME_IN_ANY_PYTHON = {
     "test_wavelet_shapes.py",
 }
 
-# What takes longest, where shorter tests go the same ways: all but a few of a function's
-# parameters, or its larger case. By the module's name after test_.
+# The slowest tests whose code paths shorter tests cover too: most parameters of a function, or its
+# larger case. Keyed by the module's name after test_.
 LONG = {
     "adaptive_scans: a_closed_surface_stays_closed",
     "adaptive_scans: the_surface_does_not_depend_on_threads_or_memory",
@@ -150,7 +150,7 @@ LONG = {
     "sharp_edges: random_booleans_are_sound[clean]",
 }
 
-# Tests of many alike: the first, and then one in so many.
+# Tests with many similar parameters: run the first, and then one in this many.
 FEW = {
     "boolean: boxes_with_faces_in_common": 2,
     "cancel: a_cancel_can_come_at_any_time": 3,
@@ -194,7 +194,7 @@ def _names(item):
 
 
 def _long_ones(items):
-    """Yields those that are left to PREFILTER_TEST_ALL."""
+    """Yields the tests that run only with PREFILTER_TEST_ALL."""
     before = collections.Counter()
     for item in items:
         name, function = _names(item)

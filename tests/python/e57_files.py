@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""E57 files, written bit by bit as ASTM E2807 has them."""
+"""E57 files, written bit by bit after ASTM E2807."""
 
 import struct
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ NORMALS = "http://www.libe57.org/E57_NOR_surface_normals.txt"
 
 @dataclass
 class Number:
-    """Whole numbers, of as few bits as their limits take, perhaps scaled."""
+    """Whole numbers of as few bits as their limits need, optionally scaled."""
 
     values: list[int]
     low: int

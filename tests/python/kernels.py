@@ -39,7 +39,7 @@ def tolerance_of(filter):
 
 
 def folded(weights, reach, size, wrap):
-    """The weights of texels -reach ... size + reach as those of the image's own."""
+    """Folds the weights of texels -reach ... size + reach onto the image's own texels."""
     texel = np.arange(-reach, size + reach)
     read = np.clip(texel, 0, size - 1) if wrap == "clamp" else texel % size
     counts = (wrap != "border") | (read == texel)
@@ -49,7 +49,7 @@ def folded(weights, reach, size, wrap):
 
 
 def weights_at(filter, centers, width, size, wrap):
-    """Of the texels along an axis, a row for each center, where the unit is `width` texels wide."""
+    """Weights of texels along an axis, a row per center; the kernel's unit is `width` texels."""
     center = np.atleast_1d(np.asarray(centers, float))[:, None]
     reach = int(np.ceil(3 * max(width, 1) + abs(center).max())) + 1
     texel = np.arange(-reach, size + reach)
@@ -62,6 +62,6 @@ def weights_at(filter, centers, width, size, wrap):
 
 
 def weights_of_texels(filter, size, target, wrap):
-    """Of each of the texels that an axis is resampled to."""
+    """Weights for each of the texels that an axis is resampled to."""
     ratio = size / target
     return weights_at(filter, (np.arange(target) + 0.5) * ratio, ratio, size, wrap)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""LAS files, written as the specification of LAS 1.4 has them, without a library."""
+"""LAS files, written after the specification of LAS 1.4, without a library."""
 
 import struct
 
@@ -10,15 +10,15 @@ SCALES, OFFSETS = (0.001, 0.01, 0.5), (500_000.0, 5_000_000.0, -10.0)
 
 
 def las(points, point_format, *, extra=(), padding=0, records=(), mark=0):
-    """The bytes of a file.
+    """The bytes of a LAS file.
 
     Args:
         points: A dictionary for each: x, y, z in steps, and perhaps intensity, number, of, class,
             color and the names of extra dimensions.
         point_format: 0 to 10.
         extra: (name, kind, code of struct, scale, offset) of extra dimensions.
-        padding: Bytes behind each point that nothing describes.
-        records: (user, number, contents) before the record of extra dimensions.
+        padding: Undescribed bytes after each point.
+        records: (user, number, contents), written before the record of the extra dimensions.
         mark: Bits that are added to the format.
     """
     described = b"".join(

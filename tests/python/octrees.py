@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Octrees compared."""
+"""Comparison of octrees."""
 
 import numpy as np
 import prefilter
@@ -8,7 +8,7 @@ from prefilter import _native
 
 
 def octrees_are_same(first: prefilter.Octree, second: prefilter.Octree) -> bool:
-    """The same tree, bit for bit."""
+    """Asserts that two trees are the same, bit for bit."""
     own, other = _native.levels_of(first), _native.levels_of(second)
     return (
         first.depth == second.depth

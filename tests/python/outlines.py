@@ -2,10 +2,10 @@
 
 """Images of shapes by quadrature over the true shape, row by row.
 
-At a height y an outline passes at some x; between these the winding number says what is inside.
-Along x the kernel's antiderivative does the rest, along y a rule of Gauss's between all heights
-where something changes: where a curve turns, begins, meets another one or a line at a multiple of
-1/2, where kernels have their seams.
+At a height y the outlines cross at some x; the winding number between crossings decides what to
+fill. The integral along x comes from the kernel's antiderivative, the one along y from Gauss
+quadrature between all heights where something changes: where a curve turns, begins, intersects
+another one or crosses a line at a multiple of 1/2, where kernels have their seams.
 """
 
 import functools
@@ -27,7 +27,7 @@ class Segment:
     weight: float | None = None
 
     def split(self, at):
-        """Both parts, by de Casteljau's scheme; of Bezier curves only."""
+        """Splits Bezier curves only, by de Casteljau's scheme."""
         points, left, right = self.points, [], []
         while len(points):
             left.append(points[0])
@@ -88,7 +88,7 @@ def polygon(points):
 
 
 def blob(degree, seed, low, high, count=5, weights=None):
-    """A closed curve around a center that does not cross itself: wavy, of segments of a degree."""
+    """A wavy closed curve around a center, of segments of a degree, without self-intersections."""
     random = np.random.default_rng(seed)
     low, high = np.asarray(low, float), np.asarray(high, float)
     center, size = 0.5 * (low + high), 0.5 * (high - low)
@@ -105,7 +105,7 @@ def blob(degree, seed, low, high, count=5, weights=None):
 
 
 def circle(center, radius):
-    """Of four conics."""
+    """A circle of four conics."""
     corners = np.array([(1, 0), (0, 1), (-1, 0), (0, -1), (1, 0)], float)
     return [
         Segment(
@@ -169,19 +169,19 @@ class _Curve:
 
 
 def _is_mixed(x, order):
-    """Whether x, in an order along axis 0, falls somewhere by more than rounding."""
+    """Whether x decreases anywhere along axis 0 by more than rounding."""
     x = np.clip(np.take_along_axis(x, order, 0), None, 1e9)
     return (np.diff(x, axis=0) < -1e-9).any(0)
 
 
 class Rows:
-    """Where contours pass rows of nodes, for an image of a size and all filters.
+    """Crossings of contours with rows of nodes, for an image of a size and all filters.
 
     Attributes:
         y: (nodes,), heights.
-        weights: (nodes,), of the rule along y.
+        weights: (nodes,), the weights of the quadrature along y.
         x: (nodes, crossings), rising, and infinite behind the last one.
-        winding: (contours, nodes, crossings), of what is right of each crossing.
+        winding: (contours, nodes, crossings), winding numbers to the right of each crossing.
     """
 
     def __init__(self, contours, width, height, nodes=NODES):
@@ -232,7 +232,7 @@ class Rows:
         return x
 
     def _with_meetings(self, cuts, samples=15):
-        """Adds the heights where crossings change places."""
+        """Adds the heights where crossings change order."""
         share = (np.arange(samples) + 0.5) / samples
         y = cuts[:-1, None] + np.diff(cuts)[:, None] * share
         x = self._raw_crossings(y.ravel()).reshape(-1, *y.shape)
@@ -247,7 +247,7 @@ class Rows:
 
     def _crossings(self, y, contours):
         x = self._raw_crossings(y)
-        # The inside of a counter-clockwise contour ends at a piece that rises.
+        # The interior of a counter-clockwise contour ends at a rising piece.
         step = np.array([-1 if y1 > y0 else 1 for *_, y0, y1 in self._pieces], int)
         owner = np.array([contour for contour, *_ in self._pieces], int)
         order = np.argsort(x, axis=0, kind="stable")
@@ -259,7 +259,7 @@ class Rows:
         return x.T, np.array(winding)
 
     def inside(self, fill_rule="nonzero"):
-        """(nodes, crossings), 1 where what is right of each crossing is filled, and 0."""
+        """(nodes, crossings), 1 where the span to the right of a crossing is filled, else 0."""
         whole = self.winding.sum(0)
         return (whole % 2 if fill_rule == "evenodd" else whole != 0).astype(float)
 
@@ -286,15 +286,16 @@ KERNELS = {
 
 
 class Kernel:
-    """A kernel with an integral of 1; integrals of it and of x times it are fine fits."""
+    """A kernel with an integral of 1; its integrals are accurate piecewise polynomials."""
 
     def __init__(self, name):
         self._formula, self.radius = KERNELS[name]
-        # By powers of what is behind a piece's begin, of the integrals of 1 and x times it.
+        # Integrals of the kernel and of x times the kernel: coefficients per piece, in powers of
+        # the distance from the piece's start.
         self._integrals = []
         sums = np.zeros(2)
         for begin in np.arange(-self.radius, self.radius, 0.5):
-            # Formulas have seams at multiples of 1/2, where both sides agree but for the box's.
+            # Formulas have seams at multiples of 1/2; all but the box's are continuous there.
             value = Chebyshev.interpolate(lambda t, low=begin: self._formula(low + t), 14, [0, 0.5])
             value = value.convert(kind=Polynomial)
             both = [value.integ(k=sums[0]), (value * Polynomial([begin, 1])).integ(k=sums[1])]
@@ -309,7 +310,7 @@ class Kernel:
         return np.where(inside, self._formula(np.where(inside, x, 0.0)), 0.0) / self.total
 
     def integral(self, x, power=0):
-        """Of u^power times the kernel, from -infinity to x."""
+        """The integral of u^power times the kernel, from -infinity to x."""
         behind = np.clip(2 * (np.asarray(x, float) + self.radius), 0, len(self._integrals) - 1)
         piece = behind.astype(int)
         return _horner(self._integrals[:, power].T[:, piece], 0.5 * (behind - piece))
@@ -321,15 +322,15 @@ def kernel(name):
 
 
 def _changes(values):
-    """What comes in at each crossing, with the sign turned: integrals begin on the left."""
+    """The negated step of the values at each crossing: integrals begin on the left."""
     return np.diff(values, axis=1, prepend=0.0) * -1.0
 
 
 def image_of_rows(rows, width, height, name, values=None, color=(1.0, 0.0, 0.0)):
-    """(height, width), by a separable filter.
+    """An image, (height, width), by a separable filter.
 
     Args:
-        values: (nodes, crossings), what is right of each crossing; None for `rows.inside()`.
+        values: (nodes, crossings), values right of each crossing; None for `rows.inside()`.
         color: (c0, c_x, c_y): values are multiplied by c0 + c_x x + c_y y.
     """
     k = kernel(name)
@@ -350,7 +351,7 @@ def image_of_rows(rows, width, height, name, values=None, color=(1.0, 0.0, 0.0))
 
 @functools.cache
 def radial_kernel(radius):
-    """The windowed jinc by the distance's square: J1 by Bessel's integral, to an integral of 1."""
+    """The windowed jinc by the squared distance, with an integral of 1; J1 by Bessel's integral."""
 
     def value(square):
         r = np.sqrt(square)
@@ -363,7 +364,7 @@ def radial_kernel(radius):
 
 
 def radial_values(rows, pixels, radius):
-    """(pixels,): the means by a radial filter around pixels (x, y)."""
+    """Means by a radial filter around pixels (x, y), (pixels,)."""
     value = radial_kernel(radius)
     change = _changes(rows.inside())
     points, weights = np.polynomial.legendre.leggauss(24)
@@ -381,16 +382,16 @@ def radial_values(rows, pixels, radius):
 
 
 def image_of_colors(rows, width, height, name, values, color, nodes=8):
-    """(height, width), by a separable filter: values times color(x, y), any smooth function.
+    """An image, (height, width), of values times color(x, y), by a separable filter.
 
-    Where it is not smooth, contours of `rows` must run.
+    The color must be smooth between the contours of `rows`.
     """
     k = kernel(name)
     lines = np.arange(-REACH, width + REACH + 0.25, 0.5)
     crossings = np.clip(rows.x, -REACH, width + REACH)
     breaks = np.sort(np.concatenate([crossings, np.tile(lines, (len(rows.y), 1))], 1), axis=1)
     lengths = np.diff(breaks)
-    # What lies left of a middle: how many crossings.
+    # The number of crossings to the left of each interval's middle.
     left = (rows.x[:, None, :] < (breaks[:, :-1] + 0.5 * lengths)[..., None]).sum(2)
     padded = np.concatenate([np.zeros((len(rows.y), 1)), values], 1)
     points, weights = np.polynomial.legendre.leggauss(nodes)

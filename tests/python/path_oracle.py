@@ -17,7 +17,7 @@ Step = tuple[str, list[complex]]
 
 
 def numbers_of(text: str) -> tuple[list[float], bool]:
-    """The numbers that a text begins with, and whether it holds nothing else."""
+    """The numbers at the start of a text, and whether it holds nothing else."""
     numbers: list[float] = []
     position = len(text) - len(text.lstrip())
     while match := _NUMBER.match(text, position):
@@ -46,7 +46,7 @@ def steps_of(text: str) -> tuple[list[Step], bool]:
 
 
 class _Pen:
-    """Where path data are."""
+    """Position in path data."""
 
     def __init__(self) -> None:
         self.steps: list[Step] = []
@@ -54,7 +54,7 @@ class _Pen:
         self._last: Step = ("", [])
 
     def draw(self, letter: str, text: str) -> bool:
-        """One command; returns whether it is valid."""
+        """Reads one command; returns whether it is valid."""
         name, origin = letter.lower(), letter.islower()
         if not self.steps and name != "m":
             return False
@@ -108,7 +108,7 @@ class _Pen:
 
 
 def arc_residual(arc: list[complex], point: complex) -> float:
-    """How far a point is from an arc's ellipse, scaled to a unit circle; 0 for degenerate arcs."""
+    """Distance of a point from an arc's ellipse, scaled to a unit circle; 0 for degenerate arcs."""
     start, radii, turn, flags, end = arc
     rx, ry = abs(radii.real), abs(radii.imag)
     if start == end or rx == 0.0 or ry == 0.0:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What tests of bad input have in common."""
+"""Helpers for tests of bad input."""
 
 import re
 from contextlib import contextmanager
@@ -24,7 +24,10 @@ def changed(array, index, value):
 
 @contextmanager
 def refused(words, error=ValueError):
-    """What is within raises the error, whose message holds the words: the argument's name first."""
+    """Expects the block to raise `error` with a message that starts with the first word.
+
+    The message must contain all words; the first is the argument's name.
+    """
     with pytest.raises(error, match=re.escape(words[0])) as caught:
         yield
     for word in words:
@@ -32,7 +35,7 @@ def refused(words, error=ValueError):
 
 
 def check_refusal(function, arguments, words, error=ValueError):
-    """A function comes with good arguments, of which these differ."""
+    """Calls a function with its good arguments, except for the given ones."""
     call, good = function
     with refused(words, error):
         call(**{**good, **arguments})

@@ -70,9 +70,9 @@ def _gauss(low, high, panels, count):
 
 @lru_cache(maxsize=1024)
 def line(filter, levels, texels, x, f):
-    """Along an axis: the sample's filter, those of texels (finer, index), and weights of places.
+    """Filters of the sample and of texels (finer, index) along an axis, with weights of positions.
 
-    For three levels places are nodes of quadrature on the line, for fewer the texels of level 0.
+    For three levels the positions are quadrature nodes on the line, else the texels of level 0.
     """
     width = filter_width(levels, f)
     reach = RADII[filter]
@@ -103,7 +103,7 @@ def line(filter, levels, texels, x, f):
 
 @dataclass
 class Fields:
-    """The filter of a sample and those of texels, over the plane."""
+    """The filters of a sample and of texels, over the plane."""
 
     sample: np.ndarray  # (y, x)
     texels: np.ndarray  # (texel, y, x)
@@ -116,7 +116,7 @@ class Fields:
 
 
 def fields(filter, levels, offsets, x, y, f):
-    """Those of a place, for texels (finer, x, y)."""
+    """The fields of the sample at (x, y, f), for texels (finer, x, y)."""
     along_x = line(filter, levels, tuple((d, i) for d, i, _ in offsets), x, f)
     along_y = line(filter, levels, tuple((d, j) for d, _, j in offsets), y, f)
     return Fields(
@@ -127,7 +127,7 @@ def fields(filter, levels, offsets, x, y, f):
 
 
 def terms(degree, x, y, f):
-    """The powers that coefficients are of."""
+    """The powers that the coefficients multiply."""
     if degree == 1:
         return np.array([1, x, y, f])
     return np.array([1, x, y, f, x * x, y * y, f * f, x * y, x * f, y * f])
@@ -135,7 +135,7 @@ def terms(degree, x, y, f):
 
 @dataclass(frozen=True)
 class Subdomain:
-    """A part of the folded cell, and of the way from level to level."""
+    """A part of the folded cell and of the interval between levels."""
 
     i: int
     j: int
@@ -163,7 +163,7 @@ class Subdomain:
 
 
 def subdomains(grid, slices, levels):
-    """All of a section, in the order of tables."""
+    """All subdomains of a section, in the order of tables."""
     columns = (grid + 1) // 2
     slices = 1 if levels == 1 else slices
     return [
@@ -175,7 +175,7 @@ def subdomains(grid, slices, levels):
 
 
 def table_error(filter, degree, part, offsets, coefficients, panels=1, count=4):
-    """Equation 6.4 of weights that are polynomials."""
+    """Equation 6.4 for weights that are polynomials."""
     return sum(
         weight
         * fields(filter, part.levels, offsets, x, y, f).error(coefficients @ terms(degree, x, y, f))
@@ -186,7 +186,7 @@ def table_error(filter, degree, part, offsets, coefficients, panels=1, count=4):
 def trilinear_texels(levels, x, y, f):
     """The texels of trilinear interpolation, and their weights."""
     result = {}
-    # Of the cell's level and the one below; of the image alone where it is the only one.
+    # Shares of the cell's level and of the one below; the image alone if it is the only level.
     shares = [(0, 1.0)] if levels == 1 else [(0, f), (1, 1 - f)]
     for finer, share in shares:
         px, py = x * 2**finer - 0.5, y * 2**finer - 0.5
@@ -208,10 +208,10 @@ def trilinear_error(filter, part, panels=1, count=4):
 
 
 class System:
-    """Equation 6.4 with all coefficients of all of these texels unknown.
+    """Equation 6.4, where all coefficients of the given texels are unknown.
 
-    With a ramp weight, the squared distance in cells between a place and the weighted center of its
-    texels counts that much too; of sums over texels of level 0, as much as of integrals.
+    `ramp_weight` weighs the squared distance, in cells, between a position and the weighted center
+    of its texels, equally for sums over texels of level 0 and for integrals.
     """
 
     def __init__(self, filter, degree, part, offsets, panels=1, count=4, ramp_weight=0.0):
@@ -259,13 +259,13 @@ class System:
         return found.reshape(count, powers), error
 
     def value(self, coefficients):
-        """What is minimized, of coefficients (texel, term)."""
+        """The minimized objective at coefficients (texel, term)."""
         found = coefficients.ravel()
         squares = found @ np.kron(self.products, self.moments) @ found
         return self.square - 2 * found @ self.right.ravel() + squares
 
     def best_set(self, count):
-        """The set of so many texels with the least error, of all there are, and that error."""
+        """The set of `count` texels with the least error, by trying all, and that error."""
         sets = np.array(list(combinations(range(len(self.right)), count)))
         # A root of the moments splits the system by polynomials.
         root = np.linalg.cholesky(self.moments)
@@ -277,7 +277,7 @@ class System:
             free = inverse @ right[part]
             row = inverse.sum(axis=1)
             multiplier = (sums - free.sum(axis=1)) / row.sum(axis=1)[:, None]
-            # At the least, c' G c - 2 c' b is -b' G^-1 b + (what the sum lacks)^2 / (1' G^-1 1).
+            # The minimum of c' G c - 2 c' b is -b' G^-1 b + (the sum's deficit)^2 / (1' G^-1 1).
             errors = (
                 self.square
                 - (free * right[part]).sum(axis=(1, 2))

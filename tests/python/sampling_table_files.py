@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Sampling tables of random numbers: any offsets and weights that a file may hold."""
+"""Sampling tables of random offsets and weights, within the limits of the file format."""
 
 import json
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Writers of scan files, independent of the library, and the points that they write."""
+"""Writers of scan files, independent of the library, and sample data for them."""
 
 import struct
 from pathlib import Path
@@ -41,7 +41,7 @@ def lines(*columns, separator=" "):
 
 
 def whole(text):
-    """The same with whole numbers as such."""
+    """Rows of numbers, with whole numbers written without a point."""
     return text.replace(".0 ", " ").replace(".0\n", "\n")
 
 
@@ -126,7 +126,7 @@ def pcd(data, fields, rows, *, lines=None):
 
 
 def lzf(plain):
-    """Compresses as LibLZF does, only that it looks longer for what repeats."""
+    """Compresses as LibLZF does, but searches longer for repetitions."""
     packed, literals, seen, at = bytearray(), bytearray(), {}, 0
 
     def flush():
@@ -164,7 +164,7 @@ def lzf(plain):
 
 
 def garble(random, contents):
-    """Cuts a file, or changes, repeats or leaves out some of its bytes."""
+    """Truncates a file, or changes, repeats or removes some of its bytes."""
     garbled = bytearray(contents)
     for _ in range(random.integers(1, 4)):
         at, length = random.integers(0, len(garbled) + 1), random.integers(1, 9)
@@ -183,7 +183,7 @@ def garble(random, contents):
 
 
 def garbled_are_refused(folder, name, contents):
-    """Asserts that a file that is damaged in any way is read, or refused with its name."""
+    """Asserts that damaged files are read, or refused with their names."""
     random = np.random.default_rng(5)
     prefilter.read_points(write(folder, name, contents))
     messages = []

@@ -81,7 +81,7 @@ def surface_samples(mesh: Mesh, steps: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def samples_inside(mesh: Mesh, steps: int, wrap: tuple[str, str]) -> tuple[np.ndarray, np.ndarray]:
-    """The same of the part that weighs something: triangles are cut at the edges of a border.
+    """Samples of the part with a weight: triangles are clipped at the edges of a border.
 
     The parts of a triangle get points as dense as the triangle would.
     """
@@ -120,7 +120,7 @@ def _cut(polygon: list[np.ndarray], axis: int, edge: float, sign: float) -> list
 
 
 def wrap_indices(index: np.ndarray, size: int, mode: str) -> tuple[np.ndarray, np.ndarray]:
-    """Which texel each index reads, and whether it is one (outside of a border there is none)."""
+    """The texel that each index reads, and whether there is one (not outside of a border)."""
     if mode == "repeat":
         return index % size, np.ones(index.shape, bool)
     inside = (index >= 0) & (index < size)
@@ -155,7 +155,7 @@ def bilinear(image: np.ndarray, uvs: np.ndarray, wrap: tuple[str, str]) -> np.nd
 
 
 def in_border(uvs: np.ndarray, wrap: tuple[str, str]) -> np.ndarray:
-    """Points that weigh nothing: outside of the image along an axis that has a border."""
+    """Points of weight 0: outside of the image along an axis that has a border."""
     outside = np.zeros(len(uvs), bool)
     for axis, mode in enumerate(wrap):
         if mode == "border":

@@ -30,7 +30,7 @@ class SoftwareGpu:
         self._context = moderngl.create_context(standalone=True, backend="egl", require=330)
 
     def texture(self, levels):
-        """A texture of float32 with these levels, as OpenGL has them: sizes rounded down."""
+        """A texture of float32 with these levels; sizes are rounded down, as in OpenGL."""
         height, width, channels = levels[0].shape
         texture = self._context.texture((width, height), channels, dtype="f4")
         texture.build_mipmaps(0, len(levels) - 1)
@@ -43,7 +43,7 @@ class SoftwareGpu:
         return texture
 
     def program(self, source, body, version=330):
-        """What computes `result`, a vec4, from `query`, a vec4, and from `levels` and `wrap`."""
+        """Compiles code that computes `result` from `query`, both vec4, `levels` and `wrap`."""
         fragment_shader = FRAGMENT_SHADER.format(version=version, source=source, body=body)
         return self._context.program(vertex_shader=VERTEX_SHADER, fragment_shader=fragment_shader)
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Solids for tests of voxels: meshes, and what is true of them by methods of their own.
+"""Solids for tests of voxels: meshes, and their properties by independent methods.
 
-Nothing here calls the library, nor shares a method with it: occupancies are exact integrals of
-heights over columns of cells, and inside is where generalized winding numbers say so.
+Nothing here calls the library or shares a method with it: occupancies are exact integrals of
+heights over columns of cells, and generalized winding numbers decide which points are inside.
 """
 
 import sys
@@ -106,8 +106,8 @@ def _split(triangles: np.ndarray, axis: int, plane: float) -> np.ndarray:
 def occupancies(solid: Solid, low, high, n: int) -> np.ndarray:
     """The mean winding number over each of the n^3 cells [x, y, z], exactly.
 
-    It is the integral, over each column of cells, of the heights of the surface in it: a piece
-    adds what is below it where it faces up, and takes it away where it faces down.
+    It integrates the heights of the surface over each column of cells: a piece that faces up adds
+    the volume below it, and a piece that faces down subtracts it.
     """
     parts, cells = pieces(solid.corners, low, high, n)
     a, b, c = np.moveaxis(parts, 1, 0)
@@ -161,10 +161,10 @@ def _rowdot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
 
 
 class WindingNumbers:
-    """The same, faster, for many points.
+    """Winding numbers of many points, faster.
 
-    A fan over what is open of a surface closes it. The winding number of a closed one counts how
-    often it is crossed on the way up from a point; that of the fan is then taken away again.
+    A fan over its boundary closes an open surface. The winding number of a closed surface counts
+    its signed crossings with a ray up from the point; the fan's share is then subtracted again.
     """
 
     COLUMNS = 128  # Along x and along y.
@@ -249,11 +249,11 @@ class RandomPoints:
         self._random = np.random.default_rng(1)
 
     def estimate(self, inside, *, error: float = 0.001) -> Estimate:
-        """The volume where `inside` says so of the winding numbers, of that relative error."""
+        """The volume where `inside` accepts the winding numbers, to a relative error."""
         return self.estimates([inside], error=error)[0]
 
     def estimates(self, insides, *, error: float = 0.001) -> list[Estimate]:
-        """The same for several, from the same points."""
+        """Several such volumes, from the same random points."""
         for n in (32, 64, 128, 256):
             found = self._estimates(insides, n)
             if all(each.error < error * each.volume for each in found):
@@ -280,7 +280,7 @@ class RandomPoints:
         return [Estimate(*each) for each in zip(volumes.tolist(), errors.tolist(), strict=True)]
 
     def _sample(self, insides, chosen: np.ndarray) -> np.ndarray:
-        """Whether a random point of each of the chosen cells is inside, for each of `insides`."""
+        """Whether a random point in each chosen cell is inside, for each of `insides`."""
         cells = np.argwhere(chosen)
         places = (cells + self._random.random(cells.shape)) / len(chosen)
         points = self._low + places * (self._high - self._low)
@@ -289,7 +289,7 @@ class RandomPoints:
 
 
 def touched_cells(corners: np.ndarray, low, high, n: int) -> np.ndarray:
-    """The n^3 cells that the boxes of triangles meet: all that triangles meet, and a few more."""
+    """The n^3 cells that the triangles' bounding boxes overlap: a superset of the cells touched."""
     scaled = (corners - low) * (n / (high - low))
     first, last = (np.floor(f).astype(int) for f in (scaled.min(axis=1), scaled.max(axis=1)))
     within = ((last >= 0) & (first < n)).all(axis=1)
@@ -305,7 +305,7 @@ def touched_cells(corners: np.ndarray, low, high, n: int) -> np.ndarray:
 
 @dataclass(frozen=True)
 class SurfaceFaults:
-    """What keeps a surface from being a closed, oriented 2-manifold."""
+    """Defects that keep a surface from being a closed, oriented 2-manifold."""
 
     open_or_crowded_edges: int
     pinched_vertices: int
@@ -340,8 +340,8 @@ def surface_faults(positions: np.ndarray, triangles: np.ndarray) -> SurfaceFault
         step = order[place][before]
         label = corner.copy()
         while True:
-            # Of 2^k corners in turn. Unchanged, it is the same of all such runs of a fan, which
-            # together are all of it.
+            # The least label of 2^k corners in turn. If no label changes, all such runs of a fan
+            # have the same one, and together the runs cover the fan.
             least = np.minimum(label, label[step])
             if (least == label).all():
                 break

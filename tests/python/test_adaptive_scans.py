@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`adaptivity` of reconstructions: fewer triangles, no farther from the surface than it says."""
+"""`adaptivity` of reconstructions: fewer triangles, within that distance of the surface."""
 
 import numpy as np
 import prefilter
@@ -23,7 +23,7 @@ def wall(count=60_000, seed=0):
 
 
 def both(cloud, **options):
-    """A surface with all its triangles, and with fewer."""
+    """A surface with all its triangles, and the simplified one."""
     options = {"depth": 7, "support": True, "threads": 1} | options
     adaptivity = options.pop("adaptivity")
     report = prefilter.ReconstructionReport()

@@ -66,7 +66,7 @@ def test_probes_come_close_to_the_ellipse(image, levels, ratio):
         found = prefilter.sample_anisotropic(levels, table, PLACES, jacobians, wrap="repeat")
         error = np.sqrt(np.mean((found - exact) ** 2)) / exact.std()
         assert error < bound
-    # Round ones of the same width are much farther off.
+    # Isotropic samples of the same width have much larger errors.
     round_ = prefilter.sample_anisotropic(
         levels, TABLE, PLACES, jacobians, max_probes=1, wrap="repeat"
     )
@@ -92,7 +92,7 @@ def test_weights_sum_to_1(max_probes):
 
 
 def test_only_the_ellipse_counts(levels):
-    """Not which pixels span it: J and J times any rotation have the same."""
+    """Only the ellipse matters: J and J times any rotation have the same result."""
     jacobians = turned(ANGLES, 11.0, 3.0)
     expected = prefilter.sample_anisotropic(levels, "trilinear", PLACES, jacobians, wrap="repeat")
     spun = jacobians @ turned(ANGLES[::-1], 1, 1)

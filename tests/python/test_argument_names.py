@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The names that type checkers tell for arguments are those that the functions take."""
+"""Literal types of arguments list the names that the functions accept."""
 
 import io
 import re

@@ -166,7 +166,7 @@ def contour_of(found, cell, depth=7):
 
 
 def kept_share(solid, positions, triangles, distance):
-    """Of points of a surface, those that are that near to another one."""
+    """The share of points of a solid's surface within `distance` of the given mesh."""
     random = np.random.default_rng(3)
     a, b, c = np.moveaxis(solid.corners, 1, 0)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
@@ -178,7 +178,7 @@ def kept_share(solid, positions, triangles, distance):
 
 
 def edge_balance(triangles):
-    """How many edges are not run through as often one way as the other."""
+    """The number of edges that triangles traverse more often in one direction than the other."""
     edges = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     up = edges[:, 0] < edges[:, 1]
     unique, which = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
@@ -211,7 +211,7 @@ def test_sheets_get_a_thickness(name):
 
 @pytest.mark.parametrize("height", [5, 8, 12])
 def test_shallow_domes_are_sheets_as_a_whole(height):
-    """Cells keep all but the rim of what is behind a cap; closing holes makes no cap of 3 %."""
+    """Cells keep the volume behind a cap except its rim; closing holes makes no cap of 3 %."""
     dome = sheet(24, lambda x, y: height / 64 * (1 - (x * x + y * y) / 2))
     dome = dome.transformed(random_rotation(1))
     bounds = prefilter.cube_around(
@@ -360,7 +360,7 @@ def without_back(solid, depth):
 @pytest.mark.parametrize("sheets", ["faces", "shell"])
 @pytest.mark.parametrize("middle", [-0.15, -0.05, 0.0])
 def test_what_reaches_into_another_part_is_no_sheet(middle, sheets):
-    """An eye in its socket: open at the back, which the head covers, so that nothing is lost."""
+    """An eye in its socket is open at the back, where the head covers it: nothing is lost."""
     head = box((-1, -1, -1), (1, 1, 0))
     eye = without_back(sphere(0.5), -0.4)
     moved = Solid(eye.positions + np.array([0, 0, middle]), eye.triangles)
@@ -370,7 +370,7 @@ def test_what_reaches_into_another_part_is_no_sheet(middle, sheets):
     assert len(found.triangles) == len(mesh.triangles)
     closed = prefilter.close_holes(found.positions, found.triangles)
     tree = prefilter.voxelize(closed.positions, closed.triangles, depth=7, thickness=1.5)
-    # What is above the head: a ball's cap (Archimedes).
+    # The volume above the head: a ball's cap (Archimedes).
     height = 0.5 + middle
     cap = np.pi * height**2 * (0.5 - height / 3)
     assert tree.volume == pytest.approx(4.0 + cap, rel=5e-3)

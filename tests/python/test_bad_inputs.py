@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Bad input gets a message that names the argument, what was found and what is allowed.
+"""Messages for bad input name the argument, the value found and the values allowed.
 
-A row is a function, the arguments that differ from good ones, and what its message must hold: the
-argument's name first. The error is a ValueError, or an OSError where the disk is what is wrong.
+A row is a function, the arguments that differ from good ones, and the words its message must hold:
+the argument's name first. The error is a ValueError, or an OSError if the disk is at fault.
 """
 
 import inspect
@@ -326,7 +326,7 @@ ROWS = [
     ),
     ("write_ktx2", {"format": "bc4", "encoding": "srgb"}, ["'srgb'", "no sRGB form in KTX 2"]),
 ]
-# Where something stands in the way on the disk.
+# Arguments that conflict with files on the disk.
 PLACES = [
     ("nowhere/out.dds", ["path: there is no folder", "nowhere"]),
     ("folder.dds", ["path: ", "folder.dds' is a folder"]),
@@ -336,7 +336,7 @@ PLACES = [
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """The current folder: it holds a read-only file, and a folder that is named like a file."""
+    """The current folder, with a read-only file, and a folder that has a file's name."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "kept.dds").write_bytes(b"kept")
     (tmp_path / "kept.dds").chmod(0o444)
@@ -362,7 +362,7 @@ def test_refusal(function, arguments, words, error, folder):
 
 
 ALL = {**FUNCTIONS, **SAMPLING_FUNCTIONS, **SURFACE_FUNCTIONS, **VOXEL_FUNCTIONS}
-# What is checked wherever an argument has this name: what to make of a good one, and what is said.
+# Checks for every argument of a name: a function that spoils a good value, and the message.
 USUAL = {
     "image": [(lambda good: good[0, 0], AXES), (lambda good: good.astype(np.int64), TEXELS)],
     "encoding": [(lambda _: "gamma", "is not one of linear, srgb")],
@@ -478,7 +478,7 @@ def test_every_function_is_there():
         "TracedContour",
         "TrimmedSurface",
     }
-    # In test_normals_of_points, test_face_normals, test_float_step, test_open_surfaces,
+    # Tested in test_normals_of_points, test_face_normals, test_float_step, test_open_surfaces,
     # test_painting, test_scan_files, test_scan_failures, test_point_choice, test_point_clouds,
     # test_shape_arguments, test_rasterize_svg and test_svg_files.
     elsewhere = {"estimate_normals", "file_normals", "grid_normals", "mesh_normals"}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Bad input of what takes samples of images, as in test_bad_inputs.py."""
+"""Bad input to functions that sample images, in rows as in test_bad_inputs.py."""
 
 import numpy as np
 import prefilter

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Bad input of what makes and takes voxels and meshes, as in test_bad_inputs.py."""
+"""Bad input to functions of voxels and meshes, in rows as in test_bad_inputs.py."""
 
 import numpy as np
 import prefilter

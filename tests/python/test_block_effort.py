@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The effort of block compression, as files have it."""
+"""The effort of block compression, observed in files."""
 
 import io
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Set operations on meshes that others refuse, against random points and winding numbers."""
+"""Set operations on bad meshes, against random points and winding numbers."""
 
 from dataclasses import dataclass
 
@@ -30,7 +30,7 @@ VOLUME_BAR, ERROR_BAR = 0.005, 0.001
 
 @dataclass(frozen=True)
 class Operation:
-    """A method of Octree, and the same of the winding numbers of a point."""
+    """A method of Octree, and the same operation on a point's winding numbers."""
 
     name: str
 
@@ -46,7 +46,7 @@ OPERATIONS = [Operation(name) for name in ("union", "intersection", "difference"
 
 
 def bounds_of(*solids: Solid) -> tuple[np.ndarray, np.ndarray]:
-    """A cube around all with a little to spare."""
+    """A cube around all solids with a small margin."""
     low = np.min([s.positions.min(axis=0) for s in solids], axis=0)
     high = np.max([s.positions.max(axis=0) for s in solids], axis=0)
     side = 1.04 * (high - low).max()
@@ -54,7 +54,7 @@ def bounds_of(*solids: Solid) -> tuple[np.ndarray, np.ndarray]:
 
 
 def check_surface(octree: prefilter.Octree, expected: float, interpolants=INTERPOLANTS) -> None:
-    """Closed, 2-manifold, oriented outward, and of that volume."""
+    """Asserts that a surface is closed, 2-manifold, oriented outward, and has the volume."""
     for interpolant in interpolants:
         cleanup = interpolant == "plane"  # As in Blender.
         positions, triangles = octree.contour(interpolant=interpolant, cleanup=cleanup)
@@ -67,7 +67,7 @@ def check_surface(octree: prefilter.Octree, expected: float, interpolants=INTERP
 
 
 def check(a: Solid, b: Solid, depth: int = 8) -> None:
-    """All operations, against what random points find."""
+    """Checks all operations against estimates by random points."""
     low, high = bounds_of(a, b)
     octrees = [
         prefilter.voxelize(s.positions, s.triangles, depth=depth, bounds=(low, high))
@@ -127,7 +127,7 @@ def test_the_open_bunny_and_the_armadillo():
 
 
 def test_meshes_that_intersect_themselves():
-    # As they come they hardly meet.
+    # Fitted to the same box, because in the files they barely overlap.
     unit = (0, 0, 0), (1, 1, 1)
     a, b = (load(f"csg_self_intersect{name}.obj") for name in "AB")
     check(a.fitted(*unit), b.fitted(*unit))
@@ -169,7 +169,7 @@ BOXES = {
 )
 @pytest.mark.parametrize("name", BOXES)
 def test_boxes_with_faces_in_common(name, shift, depth):
-    """Faces on the borders of cells, in their middle, where values are 1/2, and in between."""
+    """Faces lie on cell borders, in cell middles, where values are 1/2, and in between."""
     second, volumes = BOXES[name]
     low, high = (corner + shift * 2 / 2**depth for corner in UNIT_BOUNDS)
     a, b = (
@@ -195,7 +195,7 @@ def test_boxes_with_faces_in_common(name, shift, depth):
 
 
 def test_nested_shells():
-    """Each inside of the next, every other one inside out."""
+    """Balls nested in each other, every other one inside out."""
     radii = (0.48, 0.4, 0.3, 0.15)
     shells = [sphere(radius, 4, (0.5, 0.5, 0.5)) for radius in radii]
     solid = join(*(s if k % 2 == 0 else s.flipped() for k, s in enumerate(shells)))
@@ -260,7 +260,7 @@ def test_many_operands():
 
 @pytest.mark.parametrize("seed", range(4))
 def test_random_pairs(seed):
-    """All that the checker asks for, on surfaces whose cells meet in every way."""
+    """Full checks on surfaces whose cells meet in every way."""
     a = crumpled(seed, 2, 0.9)
     b = crumpled(seed + 50, 2, 0.9).transformed(random_rotation(seed), (0.3, 0.2, -0.1))
     bounds = bounds_of(a, b)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The command `boolean` without Blender: surfaces as the package's functions make them."""
+"""The command `boolean` without Blender, against the package's functions."""
 
 import os
 
@@ -54,7 +54,7 @@ def test_the_surface_is_that_of_the_package(files, capsys, operation):
 
 
 def test_the_volume_is_that_of_the_result(tmp_path, capsys):
-    """A film of cells is left where faces coincide; the surface has none, nor has the volume."""
+    """Cells keep a film where faces coincide; the surface and the volume do not."""
     for name, size in {"plate": (4, 4, 1), "hole": (2, 2, 1)}.items():
         trimesh.creation.box(size).export(tmp_path / f"{name}.ply")
     files = (tmp_path / "plate.ply", tmp_path / "hole.ply", "-o", tmp_path / "out.ply")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the package's checks of arguments say, each once: shapes, types, names, and numbers.
+"""Messages of the package's argument checks, each once: shapes, types, names, and numbers.
 
-That a function has its arguments checked is in test_bad_inputs.py.
+test_bad_inputs.py tests that functions check their arguments.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]])
 CORNERS = "(2, 3, 2) for the triangles' corners or (6, 2) for the vertices is needed"
 ARRAY = ("points", 3)
 
-# A check, its arguments, and what the message holds.
+# A check, its arguments, and the words its message must hold.
 ROWS = [
     *(
         (arrays.as_image, ("image", image), ["image: ", *words])

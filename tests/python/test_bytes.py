@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images of bytes: the levels are those of the values that they stand for, to the nearest byte."""
+"""Images of bytes: levels equal the levels of the values they encode, to the nearest byte."""
 
 import numpy as np
 import prefilter

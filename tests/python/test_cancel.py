@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A cancel is heard within 0.2 s, at any time.
+"""A cancel takes effect within 0.2 s, at any time.
 
 Between two calls of a progress callback nobody can cancel, so the longest time between them counts,
 and the time from a False to the exception. Both may grow with the input, and these inputs are
@@ -231,7 +231,7 @@ def work(request):
 
 
 def least(measure):
-    """The least of some measurements, no more of them than it takes."""
+    """The least of some measurements; stops early once one is below the limit."""
     found = np.inf
     for _ in range(TRIES):
         found = min(found, measure())
@@ -265,7 +265,7 @@ def test_a_cancel_ends_the_work(work, share):
         except prefilter.Cancelled:
             assert len(stopped) == 1
             return time.thread_time() - stopped[0]
-        # Quick work may be through before it tells again how far it is.
+        # Short work may end before its next report of progress.
         assert not stopped
         assert share > 0
         return 0.0

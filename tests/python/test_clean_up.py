@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Contours with Clean Up: what it promises of triangles, checked by other means."""
+"""Contours with Clean Up: its guarantees about triangles, checked independently."""
 
 import itertools
 from fractions import Fraction
@@ -28,7 +28,7 @@ def narrow_share(positions, triangles):
 
 
 def is_closed_manifold(triangles):
-    """Whether edges are there once in each direction, and vertices have one fan."""
+    """Whether each edge occurs once in each direction, and each vertex has one fan."""
     edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
     codes = edges[:, 0].astype(np.int64) << 32 | edges[:, 1]
     back = edges[:, 1].astype(np.int64) << 32 | edges[:, 0]
@@ -54,7 +54,7 @@ def exact(point):
 
 
 def volume(a, b, c, d):
-    """Six times that of a tetrahedron, exactly."""
+    """Six times the volume of a tetrahedron, exactly."""
     u, v, w = ([p[i] - a[i] for i in range(3)] for p in (b, c, d))
     return (
         u[0] * (v[1] * w[2] - v[2] * w[1])
@@ -98,7 +98,7 @@ def does_cross(triangle, p, q):
 
 
 def crossings(positions, triangles):
-    """The pairs of triangles that meet in more than what they share, but for shared edges."""
+    """The pairs of triangles that share no edge and intersect beyond their shared vertices."""
     corners = positions[triangles]
     low, high = corners.min(axis=1), corners.max(axis=1)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -132,7 +132,7 @@ def crossings(positions, triangles):
 
 
 def waves():
-    """Sheets that are as thin as cells, as far apart, and nowhere in a plane."""
+    """Curved sheets as thin as a cell, and a cell apart."""
     size = 13
     x, y, z = np.indices((size,) * 3)
     values = np.sin(0.7 * z + 4 * np.sin(0.31 * x) + 3 * np.cos(0.43 * y)) + 0.7

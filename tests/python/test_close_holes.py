@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Holes closed: against the surfaces that had been there, and against what the open mesh has."""
+"""Closed holes, compared with the removed surfaces and with the rest of the open mesh."""
 
 import time
 
@@ -21,7 +21,7 @@ def kept(solid, where):
 
 
 def without_cap(solid, degrees, axis=(0.3, -0.5, 0.8)):
-    """A sphere around the origin less what is closer to an axis than an angle."""
+    """A sphere around the origin without the triangles within `degrees` of an axis."""
     points = middles(solid)
     along = points @ axis / np.linalg.norm(axis) / np.linalg.norm(points, axis=1)
     return kept(solid, along < np.cos(np.radians(degrees)))
@@ -40,7 +40,7 @@ def areas(corners):
 
 
 def spread(corners, count=4000):
-    """Points of triangles, evenly by area."""
+    """Points of triangles, uniform by area."""
     random = np.random.default_rng(3)
     chosen = random.choice(len(corners), count, p=areas(corners) / areas(corners).sum())
     return np.einsum("nc,ncd->nd", random.dirichlet((1, 1, 1), count), corners[chosen])
@@ -72,7 +72,7 @@ def tube(columns, rows, *, jag=0.0):
 
 
 def pieces(solid, gap):
-    """Six of them, by the axis that faces point along, moved apart."""
+    """Six open cylinders, by the axis that faces point along, moved apart."""
     points = middles(solid)
     axis = np.abs(points).argmax(axis=1)
     sign = np.take_along_axis(points, axis[:, None], 1)[:, 0] > 0
@@ -101,7 +101,7 @@ def test_a_sphere_gets_its_missing_part(degrees):
     # The sphere itself bends by up to 3 degrees from triangle to triangle.
     assert np.median(bends(mended, len(opened.triangles))) < 3.5
     assert bends(mended, len(opened.triangles)).max() < 15
-    # About as dense as the border, before it is bent.
+    # The cap's triangles are about as dense as the border, before bending.
     assert np.median(areas(caps)) < 2 * np.median(areas(whole.corners))
 
 
@@ -133,7 +133,7 @@ def test_a_saddle_is_continued():
     away = {}
     for method in METHODS:
         caps, _, found = closed(opened, method)
-        # What is around the sheet stays open.
+        # The boundary around the sheet stays open.
         assert (found.holes, found.left_open) == (2, 1)
         points = spread(caps)
         away[method] = np.abs(points[:, 2] - height(points[:, 0], points[:, 1])).mean()

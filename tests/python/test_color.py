@@ -8,7 +8,7 @@ import pytest
 
 
 def decode(value: float) -> float:
-    """IEC 61966-2-1, in double precision."""
+    """The decoding of IEC 61966-2-1, in double precision."""
     return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
 
 

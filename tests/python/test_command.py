@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The command `prefilter`: what all of its commands have in common."""
+"""The command `prefilter`: behavior common to all of its subcommands."""
 
 import os
 import subprocess
@@ -11,7 +11,7 @@ from prefilter.commands import program
 
 
 def run(*arguments):
-    """Runs the command in a Python of its own."""
+    """Runs the command in a new process."""
     return subprocess.run(
         [sys.executable, "-m", "prefilter", *map(str, arguments)],
         capture_output=True,
@@ -22,7 +22,7 @@ def run(*arguments):
 
 
 def processor_seconds(*arguments):
-    """Returns the seconds of processors that the cheapest of a few runs takes; 0 on Windows."""
+    """Returns the processor seconds of the cheapest of a few runs; 0 on Windows."""
     durations = []
     for _ in range(3):
         before = os.times()
@@ -40,7 +40,7 @@ def test_help_names_every_command_and_starts_quickly():
     for name, purpose in program.COMMANDS.items():
         assert name in result.stdout
         assert purpose in " ".join(result.stdout.split())
-    # Python itself takes as long as it takes on this machine.
+    # Measured, because Python's own start depends on the machine.
     own = processor_seconds("-m", "prefilter", "--help") - processor_seconds("-c", "import numpy")
     assert own < 0.2
 

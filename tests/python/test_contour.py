@@ -18,7 +18,7 @@ def enclosed(positions, triangles):
 
 
 def is_closed(triangles):
-    """Whether every edge is there once in each direction."""
+    """Whether every edge occurs once in each direction."""
     edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
     forward = set(map(tuple, edges.tolist()))
     return len(forward) == len(edges) and all((b, a) in forward for a, b in forward)
@@ -83,7 +83,7 @@ def test_normals_on_a_sphere_of_fifteen_cells(center):
 
 @pytest.mark.parametrize("center", [(0.2, 0.3, 0.4), (0.61, 0.05, 0.77)])
 def test_facets_of_a_sphere_are_as_good_as_with_exact_vertices(center):
-    """Also where two cells alone put a vertex a tenth of a cell off, as on steep places."""
+    """Also on steep slopes, where two cells alone would misplace a vertex by a tenth of a cell."""
     sphere = solids.sphere(18.4, 6, center)
     octree = prefilter.voxelize(
         sphere.positions, sphere.triangles, depth=6, bounds=((-32,) * 3, (32,) * 3)
@@ -104,7 +104,7 @@ def test_facets_of_a_sphere_are_as_good_as_with_exact_vertices(center):
 
 
 def test_edges_do_not_bend_what_is_beside_them():
-    """Heights of columns across an edge are none: facets are no worse than those of two cells."""
+    """Columns across an edge give no heights: facets there are as accurate as with two cells."""
     means = dict.fromkeys(("plane", "occupancy"), 0.0)
     for seed in range(6):
         rotation = solids.random_rotation(seed)
@@ -126,7 +126,7 @@ def test_edges_do_not_bend_what_is_beside_them():
 @pytest.mark.parametrize("interpolant", INTERPOLANTS)
 @pytest.mark.parametrize("low", [0, 3, 4, 8])
 def test_a_box_of_ones_is_the_same_anywhere(interpolant, low):
-    """Its edges are cut off by 1/8 of a cell, and its corners by 5/48."""
+    """The box's edges are cut off by 1/8 of a cell, and its corners by 5/48."""
     grid = np.zeros((20, 17, 16))
     grid[low : low + 8, low : low + 8, low : low + 8] = 1
     positions, triangles = prefilter.contour(grid, interpolant=interpolant, cleanup=False)
@@ -136,7 +136,7 @@ def test_a_box_of_ones_is_the_same_anywhere(interpolant, low):
 
 
 def test_signed_distances_have_the_iso_value_zero():
-    """A grid that is no power of two along any axis: what is around it stays outside."""
+    """A grid that is no power of two along any axis: the space around it counts as outside."""
     x, y, z = np.meshgrid(np.arange(19), np.arange(21), np.arange(22), indexing="ij")
     distance = np.sqrt((x - 9) ** 2 + (y - 10) ** 2 + (z - 10) ** 2)
     positions, triangles = prefilter.contour(6.3 - distance, interpolant="linear", isovalue=0)
@@ -231,7 +231,7 @@ def sampled(positions, triangles, count, seed):
 
 
 def distances(points, positions, triangles):
-    """Of points from a surface, by trying all of its triangles."""
+    """Distances of points from a surface, by trying all of its triangles."""
     least = np.full(len(points), np.inf)
     for a, b, c in positions[triangles]:
         normal = np.cross(b - a, c - a)
@@ -252,7 +252,7 @@ def distances(points, positions, triangles):
     [*((each, 0.1) for each in INTERPOLANTS), ("plane", 0.02), ("plane", 0.5)],
 )
 def test_adaptive_surfaces_stay_within_their_distance(interpolant, adaptivity):
-    """Of the contour as it is before anything is left out; clean-up comes last and counts."""
+    """The distance is measured from the contour before simplification and clean-up."""
     solid = solids.join(
         solids.torus(1.0, 0.4, 40, 24), solids.box((1.2, -0.2, -0.7), (2.1, 0.6, 0.9))
     )
@@ -269,7 +269,7 @@ def test_adaptive_surfaces_stay_within_their_distance(interpolant, adaptivity):
 
 @pytest.mark.parametrize("seed", [None, 3, 4])
 def test_an_adaptive_box_has_twelve_triangles(seed):
-    """Vertices on its planes; edges and corners from the mesh that it was made of."""
+    """Vertices lie on the box's planes; edges and corners come from the source mesh."""
     solid = solids.box((0.1, 0.2, 0.3), (1.4, 1.1, 1.2))
     if seed is not None:
         solid = solid.transformed(solids.random_rotation(seed))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What corners of a surface lie on, charts of UV maps, and measures: on boxes and spheres."""
+"""Corner points on source meshes, charts of UV maps, and measures: on boxes and spheres."""
 
 import numpy as np
 import prefilter
@@ -133,7 +133,7 @@ def test_charts_that_meet_themselves_are_cut(turns):
 
 
 def test_triangles_around_a_pole_with_uvs_of_their_own_are_parted():
-    """They hang together by the ring below, and each has its own UVs at the pole."""
+    """Triangles at the pole are connected by the ring below, and have their own UVs at the pole."""
     positions, triangles, uvs = tube()
     ring = np.arange(24) + 24 * 6
     pole = len(positions)
@@ -150,7 +150,7 @@ def test_triangles_around_a_pole_with_uvs_of_their_own_are_parted():
 
 
 def test_charts_are_cut_where_each_face_has_all_of_an_image():
-    """As after Reset UVs: pieces hang together only where the squares fit."""
+    """UVs as after Reset UVs: pieces are connected only where the squares fit."""
     positions, triangles, uvs = tube()
     uvs = uvs * (24, 6) - np.floor((uvs * (24, 6)).min(axis=1, keepdims=True) + 0.01)
     charts = prefilter.uv_charts(positions, triangles, [uvs.astype(np.float32)])

@@ -98,7 +98,7 @@ def test_without_a_surface_the_image_counts():
 
 @pytest.mark.parametrize("wrap", ["clamp", "repeat", "border"])
 def test_wrap_modes_are_those_of_the_lookups(wrap):
-    """A surface that leaves the image: lookups there read what the mode says."""
+    """Lookups outside the image, where the surface leaves it, follow the wrap mode."""
     mesh = scenes.square((-0.25, 0.1), (1.25, 0.9))
     image = leaves(64, 40, 6, seed=5)
     levels = prefilter.mipmaps(image, mesh.surface, wrap=wrap)
@@ -123,7 +123,7 @@ def test_sides_of_any_size():
 
 
 def test_one_triangle_has_the_share_of_its_closed_form():
-    """Alpha that rises along u: the test keeps what is to the right of a line."""
+    """Alpha that rises along u: the test keeps the texels to the right of a line."""
     image = np.repeat(np.linspace(0, 1, 64, dtype=np.float32)[None, :, None], 64, axis=0)
     mesh = scenes.soup([[(0, 0), (1, 0), (0, 1)]])
     levels = [image, image[::2, ::2] ** 3]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files that are damaged: one line of ours that names the file, and no words of other libraries."""
+"""Damaged files: one line of our own that names the file, and no messages of other libraries."""
 
 import gzip
 import json
@@ -24,7 +24,7 @@ GLTF = {
     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
     "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"}],
 }
-# What libraries say, or Python, in messages that are none of ours.
+# Parts of messages of libraries and of Python.
 FOREIGN = (
     *(
         "Traceback",
@@ -41,7 +41,7 @@ FOREIGN = (
 
 
 def damages(data):
-    """Yields what is left of a file: cut off, and overwritten."""
+    """Yields damaged contents of a file: truncated, and overwritten."""
     yield from (b"", b"\0" * 100, b"hello\n", bytes(range(256)) * 2, b"{}", b"x" * 85)
     yield from (data[:count] for count in (1, 5, 20, 84, len(data) // 2, len(data) - 3))
     random = np.random.default_rng(1)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Fonts that are damaged: they are left out with a warning, and text has another font."""
+"""Damaged fonts are left out with a warning, and text uses another font."""
 
 import os
 import struct
@@ -17,7 +17,7 @@ TABLES = ("cmap", "glyf", "head", "hhea", "hmtx", "loca", "maxp", "name", "OS/2"
 
 
 def drawn(family, folder, letter="A"):
-    """Returns the alpha of a letter, and what the warnings are about."""
+    """Returns the alpha of a letter, and the subjects of the warnings."""
     source = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{SIZE}" height="{SIZE}">'
         f'<text x="2" y="30" font-size="40" font-family="{family}">{letter}</text></svg>'
@@ -44,7 +44,7 @@ def with_entry(data, wanted, offset=None, length=None):
 
 
 def damages(data):
-    """Yields whether a letter may lie elsewhere, and what is left of a font."""
+    """Yields whether a letter may lie elsewhere, and the damaged contents of a font."""
     lengths = (0, 1, 4, 40, len(data) // 2, len(data) * 9 // 10, len(data) - 1)
     yield from ((False, data[:length]) for length in lengths)
     yield from ((False, fill) for fill in (b"\0" * 1000, b"hello"))
@@ -64,14 +64,14 @@ def damages(data):
 
 @pytest.fixture
 def good(tmp_path):
-    """A folder with a font whose letter is as wide as no damaged one."""
+    """A folder with a good font, whose letter has another width than in the damaged ones."""
     make_font(tmp_path / "good.ttf", family="Good", widths={"A": 700})
     return tmp_path
 
 
 @pytest.mark.parametrize("kind", ["ttf", "otf", "variable"])
 def test_text_is_drawn_in_another_font(good, kind):
-    """Or in the damaged one, where what is damaged does not show."""
+    """The damaged font itself may serve where its damage does not show."""
     path = good / ("bad.otf" if kind == "otf" else "bad.ttf")
     if kind == "variable":
         make_variable(path)

@@ -65,7 +65,7 @@ def test_light_has_a_lower_bound_only():
 @pytest.mark.parametrize("premultiplied", [True, False])
 @pytest.mark.parametrize("peak", [1.0, 800.0])
 def test_both_kinds_of_alpha_give_the_same_light(premultiplied, peak):
-    """Means over the surface of what is seen, color times alpha, by quadrature."""
+    """Compares means over the surface of color times alpha, by quadrature."""
     mesh = scenes.random_soup(8, 9)
     straight = scenes.random_image(9, 16, 16, 4)
     straight[..., :3] *= peak
@@ -99,7 +99,7 @@ def test_both_kinds_of_alpha_give_the_same_light(premultiplied, peak):
 
 @pytest.mark.parametrize("filter", FILTERS)
 def test_straight_colors_are_those_that_are_seen(filter):
-    """Blue that no alpha shows stays out of every level, however bright it is."""
+    """Blue under alpha 0 stays out of every level, however bright it is."""
     image = np.zeros((32, 32, 4), np.float32)
     image[...] = (0.0, 0.0, 900.0, 0.0)
     image[8:20, 5:25] = (50.0, 0.5, 0.0, 1.0)

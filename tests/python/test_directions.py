@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which way normals point: as given, up, to the viewpoint, outward; and what Automatic takes."""
+"""Directions of normals: as given, up, to the viewpoint, outward; and Automatic's choice."""
 
 import numpy as np
 import prefilter
@@ -74,7 +74,7 @@ def rebuilt(*arguments, **options):
 
 
 def oriented(points, normals):
-    """A file of them."""
+    """Writes points to a file."""
     columns = [("double", axis) for axis in "xyz"] + [("double", f"n{axis}") for axis in "xyz"]
     rows = np.column_stack([points, normals])
     return ply("binary_little_endian", [("vertex", columns, rows)])
@@ -89,7 +89,7 @@ def is_field(points):
 
 
 def forest(count=40_000):
-    """The ground, and at all heights above it leaves."""
+    """The ground, and leaves at all heights above it."""
     points, _ = terrain(count)
     high = RANDOM.random(count) < 0.6
     points[high, 2] += RANDOM.uniform(0.5, 4.0, high.sum())
@@ -162,13 +162,13 @@ def test_walls_of_houses_point_away_from_them():
     found = prefilter.estimate_normals(points, direction="up")
     agree = np.einsum("ij,ij->i", found, normals)
     is_wall = normals[:, 2] == 0
-    # At edges the planes are fitted to both sides.
+    # Planes fitted at edges mix the points of both sides.
     assert (agree[~is_wall] > 0).all()
     assert (agree[is_wall] > 0).mean() > 0.99
 
 
 def test_walls_alone_agree_with_each_other():
-    """Nothing says which side of an upright wall is up: all of it has the same."""
+    """An upright wall has no upper side, but all of its normals face the same side."""
     points = turned(terrain()[0]) * [0.1, 1, 1]
     found = prefilter.estimate_normals(points, direction="up")
     assert abs(np.sign(found[:, 0]).sum()) == len(points)
@@ -223,7 +223,7 @@ def test_a_room_faces_its_scanner(wavelet):
 
 
 def test_a_terrain_is_no_room():
-    """Wherever it is in its cube."""
+    """The result does not depend on the position in the cube."""
     points, normals = terrain()
     for end in (np.empty((0, 3)), [[0, 0, 9.0]], [[0, 0, -9.0]]):
         more = np.array(end).reshape(-1, 3)
@@ -238,7 +238,7 @@ def test_a_terrain_is_no_room():
     [("up", terrain(), None), ("viewpoint", box(), (0.2, 0.1, 0.3)), ("viewpoint", box(), None)],
 )
 def test_given_normals_are_turned(tmp_path, direction, cloud, viewpoint):
-    """One by one: those whose signs are random become those that were right."""
+    """Random signs of single normals are corrected."""
     points, normals = cloud
     normals = normals if direction == "up" else -normals
     mixed = signs(len(points)) * normals
@@ -261,7 +261,7 @@ def test_given_normals_are_turned(tmp_path, direction, cloud, viewpoint):
 
 
 def test_a_viewpoint_for_each_point():
-    """More points than are read at once."""
+    """The test has more points than are read at once."""
     points, normals = box(count=140_000)
     mixed = signs(len(points)) * normals
     expected = rebuilt(points, normals)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Points of E57 files, which need no module."""
+"""Points of E57 files, read without Python modules."""
 
 import numpy as np
 import prefilter
@@ -193,7 +193,7 @@ def test_garbled_files_are_read_or_refused(tmp_path):
         garbled = bytearray(pages)
         for at in random.integers(0, len(pages), 3):
             garbled[at] = random.integers(0, 256)
-        # Correct checksums, so that reading goes on.
+        # Valid checksums, so that reading goes on past them.
         path = write(tmp_path, "scan.e57", paged(bytes(garbled)))
         try:
             points = prefilter.read_points(path)

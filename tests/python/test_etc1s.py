@@ -23,7 +23,7 @@ def read(data):
 
 
 def pyramid(image):
-    """All levels: texels from the middles of the rows and columns before."""
+    """All levels, each from every other row and column of the one before."""
     levels = [image]
     while max(levels[-1].shape[:2]) > 1:
         height, width, _ = levels[-1].shape

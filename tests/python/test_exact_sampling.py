@@ -45,7 +45,7 @@ def test_samples_are_sums_of_the_closed_form(filter, wrap):
 @pytest.mark.parametrize("filter", FILTERS)
 @pytest.mark.parametrize("wrap", WRAPS)
 def test_wide_kernels_are_the_sums_of_their_taps(filter, wrap):
-    """As wide as 20 to 5000 images: the closed form of a progression against all its terms."""
+    """Kernels 20 to 5000 images wide: the closed form of a progression against all its terms."""
     image = random_image(7, 1, 16, 1)
     for scale in (340.0, 1111.1, 80_000.0):
         found = prefilter.sample_exact(image, [(0.3, 0.5)], scale, filter=filter, wrap=wrap)
@@ -162,7 +162,7 @@ def test_a_round_ellipse_is_the_gaussian(angle, scale):
 
 
 def test_ewa_shares_the_rows_of_a_large_image():
-    """One that is summed up in parts, also far outside and with Jacobians beyond measure."""
+    """An image summed in parts, also far outside of it and with extreme Jacobians."""
     image = np.zeros((700, 600, 1), np.float32)
     image[::2] = 1
     found = prefilter.sample_ewa(

@@ -98,7 +98,7 @@ def test_bytes(tmp_path, encoding, alpha, channels):
         low, high = colors / 12.92, ((colors + 0.055) / 1.055) ** 2.4
         decoded = np.where(colors <= 0.04045, low, high)
         if channels == 2:
-            # Both channels of two are decoded, as `mipmaps` has it.
+            # Both channels of two-channel images are decoded, as in `mipmaps`.
             decoded = np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
         values[..., : decoded.shape[2]] = decoded
     if alpha == "straight" and channels in (2, 4):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Normals of points that are connected: by faces, or in a scanner's grid."""
+"""Normals of points connected by faces, or in a scanner's grid."""
 
 import numpy as np
 import prefilter
@@ -148,7 +148,7 @@ def test_stop():
 
 @pytest.mark.skipif(not SCANS.exists(), reason="the range scans are not there")
 def test_a_range_scan_of_the_bunny():
-    # It was made at the place where the model stands, so nothing has to be moved.
+    # The scan was made in the model's coordinates, so nothing has to be moved.
     points = read_points(SCANS / "bun000.ply").positions
     grid = read_range_grid(SCANS / "bun000.ply")
     normals, weights = prefilter.grid_normals(points, grid)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Names of files that every system can write."""
+"""File names that every system can write."""
 
 import pytest
 from prefilter.files.file_names import check_windows_names, identities, portable

@@ -44,7 +44,7 @@ def scene() -> tuple[np.ndarray, Surface]:
 
 
 def bilinear(level: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Returns lookups, clamped."""
+    """Returns clamped lookups."""
     height, width = level.shape[:2]
     x = np.clip(u * width - 0.5, 0, width - 1)
     y = np.clip(v * height - 0.5, 0, height - 1)
@@ -183,7 +183,7 @@ def test_level_0_and_bounds_stay(start):
 
 
 def test_nasty_surfaces():
-    """What cannot be looked at leaves levels as they were."""
+    """Surfaces that cannot be seen leave levels unchanged."""
     levels = prefilter.mipmaps(np.random.default_rng(1).random((8, 8)), filter="tent")
     flat = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0)])
     inside = np.array([[(0.1, 0.1), (0.9, 0.1), (0.1, 0.9)]])
@@ -195,7 +195,7 @@ def test_nasty_surfaces():
         (flat, 1e5 * inside),
         (np.concatenate([flat, [(1e140, 0, 0), (0, -1e140, 0), (3, 4, 1)]]), inside),
     ):
-        # What has no place in the texture hides what is behind it all the same.
+        # Triangles without a position in the texture still hide the ones behind them.
         triangles = np.arange(len(positions)).reshape(-1, 3)
         nowhere = np.zeros((len(triangles) - 1, 3, 2))
         surface = Surface(positions, triangles, np.concatenate([uvs, nowhere]))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Coordinates that single precision has rounded, far from the origin, are told."""
+"""Detection of coordinates far from the origin that single precision has rounded."""
 
 import clouds
 import numpy as np

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The C++ library's wings stand on floors, and public headers are apart from internal ones.
+"""The C++ library's wings are layered, and public headers are apart from internal ones.
 
 A wing is a folder of native/prefilter, with the public headers in the folder of that name in
 native/include; its rooms are the folders in it. A wing includes only itself and wings on lower
@@ -54,7 +54,7 @@ def _trespasses(wing: str, source: str) -> Iterator[str]:
 
 
 def _internal(paths: Iterable[Path]) -> list[str]:
-    """Returns what some files include that is not public."""
+    """Returns the non-public files that some files include."""
     return [
         f"{path.relative_to(NATIVE)} includes {included}"
         for path in paths
@@ -126,7 +126,7 @@ def test_internal_headers_are_found(header: str, expected: list[str]) -> None:
 
 
 def test_no_two_headers_define_the_same_name() -> None:
-    # Two structures of a name are one to the linker: functions of the first serve both.
+    # The linker merges structures of the same name: the first one's functions would serve both.
     homes: dict[str, list[str]] = {}
     for path in SOURCES:
         if path.suffix != ".h":

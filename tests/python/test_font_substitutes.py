@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Generic families and missing ones: as fontconfig has them, which `fc-match` tells."""
+"""Generic and missing families are replaced as by fontconfig, according to `fc-match`."""
 
 import json
 import os
@@ -30,7 +30,7 @@ ALIASES = {
     **{"fantasy": "Castle", "system-ui": "Window", "Arial": "Liberation Sans"},
     **{"sans": "Plain", "A-B:c": "Dash-ed, name"},
 }
-# Draws a letter in each family, and says how wide it is, and what is warned of.
+# Draws a letter in each family, and prints its width and the warnings.
 PROGRAM = """
 import json, sys, prefilter
 found = {}
@@ -66,7 +66,7 @@ def environment(tmp_path_factory):
     )
     text = CONFIGURATION.format(fonts=folder / "fonts", cache=folder / "cache", aliases=aliases)
     (folder / "fonts.conf").write_text(text)
-    # Of the folders that are searched otherwise there are none.
+    # Hides the folders that are searched by default.
     places = {"HOME": str(folder), "XDG_DATA_HOME": str(folder), "XDG_DATA_DIRS": str(folder)}
     return os.environ | places | {"FONTCONFIG_FILE": str(folder / "fonts.conf")}
 
@@ -84,7 +84,7 @@ def widths(environment, names):
 
 
 def matched(environment, name):
-    """Returns the width of the letter in what `fc-match` takes for a family."""
+    """Returns the width of the letter in the font that `fc-match` picks for a family."""
     words = ["fc-match", "--format", "%{family}", f":family={name}".replace("A-B:c", "A-B\\:c")]
     done = subprocess.run(words, env=environment, capture_output=True, text=True, check=True)
     family = done.stdout
@@ -105,7 +105,7 @@ def test_families_are_those_of_fontconfig(environment):
 
 
 def test_a_list_of_families(environment):
-    """The next one counts where one is missing, unless another is as good."""
+    """If a family is missing the next one counts, unless fontconfig has an equivalent."""
     found = widths(
         environment, ["Nowhere, Castle", "Arial, Castle", "Nowhere, serif", "Even, Arial"]
     )
@@ -119,7 +119,7 @@ def test_a_list_of_families(environment):
 
 
 def test_the_real_system_agrees():
-    """What is there, whatever that is."""
+    """Uses the installed fonts, whichever they are."""
     if sys.platform in ("win32", "darwin") or shutil.which("fc-match") is None:
         pytest.skip("there is no fontconfig")
     for name in ("sans-serif", "serif", "monospace", "Sans", "Arial"):

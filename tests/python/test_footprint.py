@@ -29,13 +29,13 @@ def tent_means(image, wrap):
 
 
 def means_of(oracle, shape):
-    """The means p of a level: what its texels are pulled to."""
+    """The means p of a level, to which its texels are pulled."""
     means = (oracle.pulled_right - oracle.right) / oracle.pull
     return means.reshape(*shape, -1)
 
 
 class Target:
-    """What stands on the right of a level's equations, by the definition of the footprint."""
+    """Right-hand sides of a level's equations, by the definition of the footprint."""
 
     def __init__(self, mesh, image, wrap, steps):
         self._quadrature = Quadrature(mesh, image, wrap, steps)
@@ -54,7 +54,7 @@ class Target:
         return self._quadrature.times_tents(of_points, self._shapes[k])
 
     def right_side(self, k, variance):
-        """Of level k; the variance is that of the footprint, 1 for a box one texel wide."""
+        """The right-hand side of level k; `variance` of the footprint, 1 for a box of one texel."""
         oracle = self.oracle(k)
         while len(self._means) <= k:
             level = len(self._means)
@@ -93,7 +93,7 @@ def test_trilinear_levels_fit_what_pixels_cover_at_every_mip_value(footprint, si
     options = {"filter": "pam-trilinear", "wrap": wrap, "bounds": None}
     levels = prefilter.mipmaps(image, mesh.surface, footprint=footprint, **options)
     target = Target(mesh, image, wrap, 200)
-    # Simpson's rule: of the square of what a pixel covers, in texels of the level.
+    # The mean square of a pixel's width in texels of the level, by Simpson's rule.
     steps, shares = np.linspace(0, 1, 65), np.tile([2.0, 4.0], 33)[:65]
     shares[[0, -1]] = 1.0
     covered = (shares * (steps * 4 ** (steps - 1) + (1 - steps) * 4**steps)).sum() / (3 * 64)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Random scenes of gradients over each other: in range, and against points by brute force."""
+"""Random scenes of overlapping gradients: in range, and equal to point samples."""
 
 import numpy as np
 import prefilter
@@ -33,7 +33,7 @@ def random_polygon(random):
 
 
 class Scene:
-    """Shapes, and what each of them is at points."""
+    """Shapes, and the color of each of them at points."""
 
     def __init__(self, seed, kinds, spreads):
         random = np.random.default_rng(seed)
@@ -59,7 +59,7 @@ class Scene:
             self.layers.append((points, paint))
 
     def means(self, count):
-        """The means over pixels of so many points a side."""
+        """Means over pixels, of this many points per side."""
         at = (np.arange(SIDE * count) + 0.5) / count
         x, y = np.meshgrid(at, at)
         sum_ = np.zeros((*x.shape, 4))
@@ -105,7 +105,7 @@ def colors_at(paint, x, y):
 
 @pytest.mark.parametrize("filter_", ["box", "tent"])
 def test_values_are_in_range(filter_):
-    """What pixels show is a mean of what the shapes show at points."""
+    """A pixel is a mean of the shapes' colors at points, so it lies in their range."""
     for seed in range(2000 if filter_ == "box" else 200):
         shapes = Scene(seed, ("color", "linear", "radial"), ("pad", "repeat", "reflect")).shapes
         found = prefilter.rasterize(shapes, SIDE, SIDE, filter=filter_, threads=1)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What is loaded when: Blender imports the package at every start."""
+"""Modules that an import loads: Blender imports the package at every start."""
 
 import subprocess
 import sys
@@ -8,7 +8,7 @@ import sys
 import prefilter
 import pytest
 
-# Of these Python loads the slow ones of others, too.
+# Each of the slow modules loads further slow ones.
 ALWAYS = {"prefilter", "prefilter._native"}
 SLOW = {"argparse", "concurrent.futures", "json", "logging", "tempfile", "zipfile", "tinycss2"}
 

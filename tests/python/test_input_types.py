@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images and meshes as people have them: the same, bit for bit, as what they stand for.
+"""Images and meshes of all accepted types: bit for bit the results of their canonical types.
 
-What they stand for is written out here: float32 images with an axis of channels, float64 positions,
-int64 indices, UVs of corners.
+Canonical are float32 images with an axis of channels, float64 positions, int64 indices, and UVs of
+corners. Each test converts its input to these itself.
 """
 
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ NUMBERS = np.random.default_rng(7).random(7)
 
 @dataclass(frozen=True)
 class AsHad:
-    """An image, and the float32 image (height, width, channels) that it stands for."""
+    """An image, and the same as float32, (height, width, channels)."""
 
     name: str
     image: object
@@ -68,7 +68,7 @@ named = {"ids": lambda had: had.name}
 
 
 def check(had: AsHad, found, expected):
-    """As expected, but without the axis of channels where the image has none."""
+    """Asserts the expected result, without the axis of channels if the image has none."""
     flat = np.ndim(had.image) == 2
     assert found.dtype == expected.dtype
     assert np.array_equal(found, expected[..., 0] if flat else expected)
@@ -126,7 +126,7 @@ def test_words_of_bytes_have_levels_as_the_bytes_have():
 
 @pytest.mark.parametrize("had", IMAGES, **named)
 def test_images_of_images(had):
-    """What makes one image, or levels, of an image."""
+    """Functions that turn an image into an image or into levels."""
     check(had, prefilter.resize(had.image, 7, 5), prefilter.resize(had.meant, 7, 5))
     check(had, prefilter.to_linear(had.image), prefilter.to_linear(had.meant))
     check(had, prefilter.to_srgb(had.image), prefilter.to_srgb(had.meant))
@@ -195,7 +195,7 @@ def test_samples(had):
     flat = np.ndim(had.image) == 2
 
     def same(found, expected):
-        # Samples of bytes round otherwise than those of floats that stand for the same.
+        # Samples of bytes round differently from samples of the equivalent floats.
         assert found.dtype == expected.dtype
         assert found.shape == (expected.shape[:1] if flat else expected.shape)
         np.testing.assert_allclose(found.reshape(expected.shape), expected, rtol=0, atol=1e-6)
@@ -246,7 +246,7 @@ def test_texture_files(had, write, tmp_path):
 
 @pytest.mark.parametrize("write", [prefilter.write_dds, prefilter.write_ktx2])
 def test_encoded_words_in_texture_files(write, tmp_path):
-    """Words that are sRGB-encoded are written as the floats that they are decoded to."""
+    """sRGB-encoded 16-bit words are written as decoded floats."""
     words = np.random.default_rng(3).integers(0, 65536, (8, 8, 4), np.uint16)
     floats = prefilter.to_linear(np.float32(words) / np.float32(65535))
     for format in ("rgba8", "rgba16f", "rgba32f"):
@@ -319,7 +319,7 @@ def _mesh():
 
 
 def test_as_many_triangles_as_vertices():
-    """A fan of n triangles has n vertices but for its middle; axes tell which UVs are which."""
+    """UVs of four vertices, and of the corners of four triangles: the axes tell them apart."""
     positions = [(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
     triangles = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
     of_vertices = np.array([(0.1, 0.2), (0.9, 0.2), (0.5, 0.9), (0.4, 0.4)])
@@ -341,7 +341,7 @@ def test_uvs_of_vertices_that_no_triangle_has_do_not_count():
 
 
 def test_arrays_that_know_how_to_become_some():
-    """Tensors and pictures of other libraries have this protocol."""
+    """Tensors and pictures of other libraries support this protocol."""
 
     class Picture:
         def __init__(self, array):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What is allowed: see test_bad_inputs.py for what is not."""
+"""Unusual input that is allowed; test_bad_inputs.py has the input that is refused."""
 
 import numpy as np
 import prefilter

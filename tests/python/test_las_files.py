@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Points of LAS files, which need no module."""
+"""Points of LAS files, read without Python modules."""
 
 import sys
 
@@ -52,7 +52,7 @@ def test_all_formats_of_points(tmp_path, point_format, padding):
 
 
 def test_extra_dimensions(tmp_path):
-    """Scaled dimensions, dimensions of several numbers, undocumented bytes, a normal."""
+    """Extra dimensions: scaled, of several numbers, bytes without a meaning, and a normal."""
     count = 10
     more = {
         "height": RANDOM.integers(-1000, 1000, count).tolist(),
@@ -74,7 +74,7 @@ def test_extra_dimensions(tmp_path):
 
 
 def test_points_are_read_from_any_one_on(tmp_path):
-    """More than are read at once, and only some of them: as shares of a file are."""
+    """More points than are read at once, and a part of them, as for shares of a file."""
     steps = np.arange(3 * 70_000).reshape(-1, 3)
     points = [{"xyz": row} for row in steps.tolist()]
     path = write(tmp_path, "cloud.las", las(points, 0))

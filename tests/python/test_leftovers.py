@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What processes leave that die: the next one removes it, and nothing of those that live."""
+"""Leftovers of killed processes: the next one removes them, but none of live processes."""
 
 import os
 import signal
@@ -16,7 +16,7 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="the signal is that of o
 
 
 def dying(work):
-    """Does some work in another process, which then is killed."""
+    """Does some work in another process, which is then killed."""
     child = os.fork()
     if not child:
         kept = work()
@@ -27,7 +27,7 @@ def dying(work):
 
 
 def living(work):
-    """Does some work in another process, and returns what ends that."""
+    """Does some work in another process, and returns a function that ends it."""
     told, tells = os.pipe()
     waits, ends = os.pipe()
     child = os.fork()
@@ -130,7 +130,7 @@ def test_files_without_a_name_need_no_next_one(quick_path):
 @pytest.mark.parametrize("stage", STAGES)
 @pytest.mark.parametrize("days", [0, 2])
 def test_what_other_machines_left_stays_for_a_day(quick_path, stage, days):
-    """Their locks may not be seen here."""
+    """Locks of other machines may not be visible here."""
     dying(lambda: stage(quick_path))
     own = _native.random_name()[: len(".prefilter-") + _native.MACHINE_DIGITS]
     for path in list(quick_path.iterdir()):
@@ -143,7 +143,7 @@ def test_what_other_machines_left_stays_for_a_day(quick_path, stage, days):
 
 
 def test_many_files_at_once(quick_path):
-    """More than a process may have open."""
+    """More files than a process may have open."""
     limits = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (200, limits[1]))
     try:

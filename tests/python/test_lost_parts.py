@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Lost parts against distances from the surface that came out, measured one by one."""
+"""Lost parts, against distances from the resulting surface, measured one by one."""
 
 import numpy as np
 import prefilter
@@ -35,7 +35,7 @@ def is_within(points, corners):
 
 
 def grid_on(corners, spacing=0.2):
-    """Returns points all over triangles."""
+    """Returns points spread over triangles."""
     points = []
     for a, b, c in corners:
         n = int(np.ceil(max(np.linalg.norm(b - a), np.linalg.norm(c - a)) / spacing)) + 1
@@ -46,7 +46,7 @@ def grid_on(corners, spacing=0.2):
 
 
 def specks(seed):
-    """Boxes of 0.1 to 2.5 cells, some of them near a large one."""
+    """Boxes with sides of 0.1 to 2.5 cells, some of them near a large one."""
     rng = np.random.default_rng(seed)
     parts = [box((20, 20, 20), (40, 40, 40))]
     for _ in range(40):
@@ -91,7 +91,7 @@ def test_what_is_thickened_is_kept():
 
 
 def test_inside_of_another_part_nothing_is_lost():
-    """The surface passes far from what a solid holds."""
+    """The surface passes far from a part that lies inside a solid."""
     solid = join(sphere(25.0, 4, (32, 32, 32)), box((31, 31, 31), (31.2, 31.2, 31.2)))
     assert lost_parts(solid, voxelized(solid)) == []
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`memory_limit`: the peak of a process is within it, and less than the least is refused."""
+"""`memory_limit`: a process's peak stays within it, and limits below the minimum are refused."""
 
 import json
 import re
@@ -15,14 +15,14 @@ import pytest
 from scan_writers import ply, write
 
 SLACK = 8
-"""MiB that a process takes one time and not the next."""
+"""MiB by which a process's memory varies between runs."""
 
 PROGRAM = """
 import json, os, re, sys
 import numpy as np, prefilter
 source, target, limit, threads, depth, options = sys.argv[1:]
 ball = np.random.default_rng(0).normal(size=(500, 3))
-prefilter.reconstruct(ball, ball, depth=3)  # loads what is loaded once
+prefilter.reconstruct(ball, ball, depth=3)  # one-time loading
 def mib(name):
     status = open("/proc/self/status").read()
     return int(re.search(name + r":\\s+(\\d+) kB", status)[1]) / 1024
@@ -67,7 +67,7 @@ def cloud(request, tmp_path_factory):
 
 
 def least(cloud, tmp_path, **options):
-    """What the refusal of 1 MiB says would do."""
+    """The least memory limit, as the refusal of 1 MiB states it."""
     source, depth = cloud
     with pytest.raises(ValueError, match="memory_limit: 1 MiB; at least") as refused:
         prefilter.reconstruct_file(
@@ -104,7 +104,7 @@ def test_the_least_is_enough_and_what_is_taken(cloud, tmp_path, options):
     target = tmp_path / "least.ply"
     found, _ = peak(cloud, target, enough, **options)
     assert found < 1.1 * enough + SLACK
-    # No more is asked for than is of use.
+    # The stated minimum is not much more than the memory used.
     assert enough < 1.5 * found + SLACK
     if "wavelet" not in options:
         free = tmp_path / "free.ply"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files of meshes as the command reads them: polygons, UVs of corners, and glTF's accessors."""
+"""Mesh files read by the command: polygons, UVs of corners, and glTF's accessors."""
 
 import base64
 import json
@@ -85,7 +85,7 @@ def test_concave_polygons_are_cut_inside(tmp_path, name, write):
     assert len(part.triangles) == 28
     assert volume(part) == pytest.approx(7)
     a, b, c = (part.positions[part.triangles[:, k]] for k in range(3))
-    # As fans, the triangles of the ends would overlap.
+    # Split into fans, the polygons at the ends would get overlapping triangles.
     assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(2 * 7 + 16)
 
 
@@ -98,7 +98,7 @@ def mean_uv(part):
 
 
 def test_corners_keep_their_uvs(tmp_path):
-    """UVs are places, so their mean is the letter's centroid: (9 * 1.5 - 2 * 2) / 7 upwards."""
+    """UVs equal positions, so their mean is the letter's centroid: (9 * 1.5 - 2 * 2) / 7 up."""
     points = [(x, y, 0) for x, y in U]
     lines = obj(points, []).decode() + "".join(f"vt {x} {y}\n" for x, y in U[::-1])
     lines += "f " + " ".join(f"{k + 1}/{8 - k}" for k in range(8))
@@ -185,7 +185,7 @@ def test_files_without_triangles(tmp_path):
 
 
 class Gltf:
-    """A glTF file of one mesh that is made part by part."""
+    """A glTF file of one mesh, built part by part."""
 
     def __init__(self):
         self.data = b""
@@ -241,7 +241,7 @@ class Gltf:
 
 CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
 UVS = [(0, 1), (1, 1), (1, 0), (0, 0)]
-"""v goes down in glTF files, so that these are the corners' places."""
+"""v points down in glTF files, so these UVs are the corners' positions."""
 
 
 @pytest.mark.parametrize("name", ["a.gltf", "a.glb"])
@@ -255,7 +255,7 @@ def test_gltf_meshes_without_a_material_have_uvs(tmp_path, name):
 
 
 def test_gltf_strips_fans_and_several_materials(tmp_path):
-    """One mesh has them all, as it is one to who made it."""
+    """All parts become one mesh, as their author sees them."""
     file = Gltf()
     places, uvs = file.accessor(CORNERS, "f4"), file.accessor(UVS, "f4")
     attributes = {"POSITION": places, "TEXCOORD_0": uvs}

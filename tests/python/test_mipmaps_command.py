@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The command `mipmaps`: files of levels as the package's functions make them."""
+"""The command `mipmaps`: its files of levels, against the package's functions."""
 
 import os
 import subprocess
@@ -243,7 +243,7 @@ def test_filters_without_a_mesh_are_there():
 
 
 def changed(path, data):
-    """Gives a file other contents, with the same time."""
+    """Changes a file's contents, but not its time."""
     time = path.stat().st_mtime_ns
     path.write_bytes(data)
     os.utime(path, ns=(time, time))
@@ -284,7 +284,7 @@ def test_what_is_up_to_date_is_skipped(texture, quad, tmp_path, capsys):
     picture = write_picture(tmp_path / "other.png", noise(8, 16, seed=5)).read_bytes()
     changed(moved, picture)
     assert is_made()
-    # Files that were not made this way, or are damaged, are made again.
+    # Files written differently, or damaged, are written again.
     data = out.read_bytes()
     for other in (b"", data[:90], data.replace(b"PrefilterInputs", b"PrefilterOutputs")):
         out.write_bytes(other)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What must hold for every filter, whatever the numbers."""
+"""Laws that hold for every filter and all numbers."""
 
 import itertools
 
@@ -29,7 +29,7 @@ def test_a_constant_image_stays_constant(filter, wrap):
     image = np.full((32, 64, 4), (0.2, 0.4, 0.6, 1.0), np.float32)
     surface = random_soup(1, 5, -0.2, 1.2).surface
     for level in prefilter.mipmaps(image, surface, filter=filter, wrap=wrap):
-        # The blocks between levels add roundings of their own.
+        # The matrix blocks that couple levels add rounding errors of their own.
         rounding = 5e-6 if filter == "pam-trilinear" else 2e-6
         assert np.abs(level - image[0, 0]).max() < rounding
 
@@ -119,7 +119,7 @@ def test_kernels_are_their_definitions(name):
 
 
 def test_weights_sum_to_the_surface_area():
-    # A texel's weight shows in what it adds to the last level, which is one mean over the surface.
+    # A texel's weight is its contribution to the last level, which is one mean over the surface.
     mesh = random_soup(4, 6)
     _, weights = surface_samples(mesh, 300)
     assert weights.sum() == pytest.approx(mesh.surface.area)

@@ -23,7 +23,7 @@ from scenes import (
 # the image under their tent by this times the mean diagonal.
 PULL = 1e-3
 
-# Of the gradient: quadrature with 160 steps a triangle is right to half of it.
+# Tolerance of the gradient: quadrature with 160 steps a triangle is accurate to half of it.
 TOLERANCE = 2e-3
 
 WRAPS = [
@@ -37,7 +37,7 @@ WRAPS = [
 
 
 class Quadrature:
-    """Points of a surface, their weights, and what an image is there."""
+    """Points of a surface, their weights, and an image's values there."""
 
     def __init__(self, mesh, image, wrap, steps):
         self.wrap = wrap
@@ -48,7 +48,7 @@ class Quadrature:
         self.source = bilinear(image, self.uvs, wrap)
 
     def taps(self, shape):
-        """The texels of a level that lookups read, and weights, both with those of the points."""
+        """Texels that the points' lookups read, with weights: times area, and plain."""
         taps, shares = bilinear_taps(self.uvs, *shape, self.wrap)
         return taps.T, shares.T * self.weights, shares.T
 
@@ -88,11 +88,11 @@ class Oracle:
         self.pulled_right = self.right + self.pull * means
 
     def gradient(self, level, more=0.0):
-        """Of half the objective, over the diagonal: how far each texel would move by itself.
+        """Half the objective's gradient over the diagonal: how far each texel would move alone.
 
-        `more` is what the right side has beyond that of the image.
-        Where a texel has next to no weight, quadrature cannot tell it: the diagonal counts as at
-        least a hundredth of the mean one.
+        `more` is added to the image's right-hand side.
+        Quadrature is inaccurate for texels of almost no weight, so the diagonal counts as at least
+        a hundredth of its mean.
         """
         texels = level.reshape(-1, level.shape[2]).astype(np.float64)
         residual = self.pulled @ texels - self.pulled_right - more
@@ -204,7 +204,7 @@ def test_levels_that_do_not_nest_solve_the_normal_equations_across_tiles(size):
 
 
 def trilinear_gradient(levels, mesh, image, wrap, steps):
-    """Of half the integral over mip values and surface, over the diagonal, level by level.
+    """Gradient of half the integral over mip values and surface, over the diagonal, per level.
 
     Quadrature over the surface, and Simpson's rule over each interval of mip values, which is
     exact for products of the levels' weights.

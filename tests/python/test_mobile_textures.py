@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Formats of mobile devices and zstd in KTX 2, decoded by programs of others.
+"""Formats of mobile devices and zstd in KTX 2, decoded by independent programs.
 
 scripts/decoders.txt lists those: texture2ddecoder, opengl-basisu (Basis Universal's transcoder) and
 zstandard.
@@ -46,7 +46,7 @@ SAMPLES = {
 
 
 def waves(height: int, width: int, channels: int = 4) -> list:
-    """Levels in bytes, as a photograph has them: light and shadow, two colors, and an edge."""
+    """Levels in bytes that resemble a photograph: light and shadow, two colors, and an edge."""
     levels = []
     strengths = np.array([80, 60, 45, 25])[:channels]
     while True:
@@ -60,7 +60,7 @@ def waves(height: int, width: int, channels: int = 4) -> list:
 
 
 def as_given(levels: list, format: str) -> list:
-    """Levels as the format takes them best: floats for those of floats."""
+    """Levels in the type that suits the format: floats for formats of floats."""
     return [level / np.float32(255) for level in levels] if format.endswith("hdr") else levels
 
 
@@ -70,7 +70,7 @@ def written(path: Path, levels: list, format: str, **options) -> File:
 
 
 def decoded(path: Path, file: File, format: str, number: int = 0) -> np.ndarray:
-    """A level in bytes, the bottom row first, as the program of others decodes it."""
+    """A level in bytes, the bottom row first, as an independent decoder reads it."""
     width, height = max(1, file.width >> number), max(1, file.height >> number)
     data = file.level_data[number]
     if format == "uastc":
@@ -92,7 +92,7 @@ def decoded(path: Path, file: File, format: str, number: int = 0) -> np.ndarray:
 
 
 def signal_to_noise(found: np.ndarray, wanted: np.ndarray) -> float:
-    """In decibels, of the peak; both in bytes."""
+    """Peak signal-to-noise ratio in decibels; both images in bytes."""
     error = np.mean((found - wanted.astype(float)) ** 2)
     return 10 * np.log10(255**2 / max(error, 1e-3))
 
@@ -269,7 +269,7 @@ def test_blocks_do_not_depend_on_others(tmp_path, format):
     part = written(path, [level[24:, 480:576]], format).level_data[0]
     side = int(format[5]) if format.startswith("astc") else 4
     unit = len(whole) // (96 // side * 600 // side)
-    # The top row comes first, and rows are counted from the bottom.
+    # Files store the top row first, but rows are counted from the bottom.
     rows = np.frombuffer(whole, np.uint8).reshape(96 // side, 600 // side, unit)
     wanted = rows[: 72 // side, 480 // side : 576 // side]
     np.testing.assert_array_equal(

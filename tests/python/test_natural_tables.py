@@ -2,8 +2,8 @@
 
 """Sampling tables for natural images, and those whose samples have another filter than the levels.
 
-What is expected comes from double integrals over the plane by brute force, and from random images
-whose values are correlated as the tables take them to be.
+Expected values come from double integrals over the plane by brute force, and from random images
+with the correlation that the tables assume.
 """
 
 import json
@@ -48,7 +48,7 @@ def places_of(filters, levels, texels):
 
 
 class Plane:
-    """What filters of texels, and those of samples, have in common over natural images."""
+    """Inner products of texels' and samples' filters over natural images."""
 
     def __init__(self, filter, target, levels, offsets):
         self.filters, self.levels, self.offsets = (filter, target), levels, offsets
@@ -66,7 +66,7 @@ class Plane:
         self.products = (between[0] * between[1]).sum(axis=0)
 
     def with_sample(self, x, y, f):
-        """Of all texels with the filter of a sample, and of that with itself."""
+        """Inner products of a sample's filter with all texels' filters, and with itself."""
         width = oracle.filter_width(self.levels, f)
         sides, own = 1.0, 1.0
         for axis, center in enumerate((x, y)):
@@ -77,7 +77,7 @@ class Plane:
         return np.sum(sides, axis=0), np.sum(own)
 
     def error(self, weights, x, y, f):
-        """The mean square of what a sample of such images is off."""
+        """The mean squared error of a sample of such images."""
         sides, own = self.with_sample(x, y, f)
         return own - 2 * weights @ sides + weights @ self.products @ weights
 
@@ -117,7 +117,7 @@ def test_errors_are_double_integrals_over_the_plane(filter, target, levels):
     offsets, coefficients = section.offsets[0].tolist(), section.coefficients[0]
     plane = Plane(filter, table.target, levels, offsets)
     error = trilinear = 0.0
-    # With fewer levels, sums have kinks where a texel comes into a filter's reach.
+    # If there are fewer levels, sums have kinks where a texel comes into a filter's reach.
     panels, trilinear_nodes = (1, 2) if levels == 3 else (2, 3)
     for x, y, f, weight in part.nodes(panels, 4):
         error += weight * plane.error(coefficients @ oracle.terms(1, x, y, f), x, y, f)
@@ -179,7 +179,7 @@ def test_errors_of_samples_of_natural_images_are_those_of_the_table(filter, targ
 
 
 def shapes(size):
-    """Disks of random brightness over each other, with edges of a texel; and a gradient."""
+    """Overlapping disks of random brightness, with edges one texel wide; and a gradient."""
     random = np.random.default_rng(5)
     y, x = np.mgrid[:size, :size] + 0.5
     image = 0.5 + 0.3 * x / size - 0.2 * y / size

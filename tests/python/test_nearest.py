@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Nearest points of meshes, by a search over samples of them."""
+"""Nearest points on meshes, against a search over samples."""
 
 import numpy as np
 import prefilter

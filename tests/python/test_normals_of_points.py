@@ -36,7 +36,7 @@ def degrees(found, wanted):
 
 
 def slow_normals(points, neighbours):
-    """Normals by exhaustive search and numpy's eigenvectors, with arbitrary signs."""
+    """Normals by exhaustive search and numpy's eigenvectors, of either sign."""
     normals = []
     for point in points:
         squares = np.sum((points - point) ** 2, axis=1)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Whatever writes files, where it cannot or is killed: a little of bench/reliability.
+"""Every writer of files, on full disks and when killed: a part of bench/reliability.
 
 The programs there try 30 sizes of disks, and 200 kills.
 """
@@ -79,7 +79,7 @@ def test_a_command_that_is_killed(trial, quick_path):
 
 @pytest.mark.parametrize("ending", [".exr", ".tif"])
 def test_pictures_that_are_cut_anywhere_are_found(tmp_path, ending):
-    """Their writers tell success on a full disk."""
+    """OpenImageIO's writers report success even on a full disk, so files are checked."""
     pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
     path = tmp_path / f"a{ending}"
     levels = [np.random.default_rng(i).random((64 >> i, 64 >> i, 3), np.float32) for i in range(7)]
@@ -100,7 +100,7 @@ def test_pictures_that_are_cut_anywhere_are_found(tmp_path, ending):
 
 
 def test_what_is_neither_old_nor_new_is_told(sources, quick_path):
-    """Else no trial could fail."""
+    """The check must be able to fail."""
     trial = disk_full.Trial(writers.named("package", "write_ktx2"), sources, quick_path)
     assert trial.state(trial.earlier()) == "old"
     assert trial.state(trial.new) == "new"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The objects of the native module: shared, never emptied, and useless before their __init__."""
+"""Objects of the native module: shared, never emptied, and unusable before their __init__."""
 
 import copy
 import pickle

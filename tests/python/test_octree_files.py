@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files of octrees: what was saved comes back, and of what is damaged one kind of error tells."""
+"""Files of octrees: they load as they were saved, and damaged ones raise one kind of error."""
 
 import io
 import struct

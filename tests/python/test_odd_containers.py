@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What is no container, or one without a length, where one is needed: refused by name."""
+"""Arguments that should be sized containers and are not: refused by name."""
 
 import numpy as np
 import prefilter

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Open scans: surface is cut where no sample supports it, and nowhere else."""
+"""Open scans: exactly the parts of the surface that no sample supports are cut."""
 
 import numpy as np
 import prefilter
@@ -19,7 +19,7 @@ def rebuilt(points, normals, **options):
 
 
 def edges(triangles):
-    """The edges, each once, and how many triangles each has."""
+    """The distinct edges, and the number of triangles at each."""
     found = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     return np.unique(np.sort(found, axis=1), axis=0, return_counts=True)
 
@@ -104,7 +104,7 @@ def test_a_plane_stays_a_plane(wavelet):
 
 
 def test_borders_do_not_curl():
-    """Beyond the last points a sheet turns round: little of that is left, and nothing folds."""
+    """Beyond the last points a sheet would turn back: little of that is left, without folds."""
     points, normals = flat(40_000, 1.0)
     positions, triangles, _ = rebuilt(points, normals, depth=7)
     a, b, c = np.moveaxis(positions[triangles], 1, 0)
@@ -196,7 +196,8 @@ def test_support_of_vertices():
     spacing = np.maximum(1 / np.sqrt(support["density"]), report.cell)
     tree = pytest.importorskip("scipy.spatial").cKDTree(BALL.points[HALF])
     distance = tree.query(positions)[0]
-    # Distances are to means of samples in cells, or of samples with one orientation: a bit farther.
+    # Distances are measured to the means of samples in cells, or of those facing the same way, so
+    # they may be longer than the distance to a sample, and hardly shorter.
     assert (support["distance"] * spacing > 0.7 * distance - report.cell).all()
     on_ball = positions[:, 2] > 0
     assert np.quantile(support["distance"][on_ball], 0.999) < 1.5

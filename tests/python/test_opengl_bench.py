@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What bench/textures/opengl.py takes for granted: lookups by OpenGL are those of its formulas."""
+"""OpenGL's lookups follow its formulas, as bench/mipmaps/opengl.py assumes."""
 
 import sys
 from pathlib import Path
@@ -28,7 +28,7 @@ def levels():
 
 
 def quads(*centers):
-    """A model of squares of 2 x 2 that face +y, at places (x, y), each with all of the texture."""
+    """A model of 2 x 2 squares facing +y, at positions (x, y), each with the whole texture."""
     ends = np.array([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]], float)
     corners = [ends + np.array([x, y, 0]) for x, y in centers]
     uvs = (ends[:, [0, 2]] + 1) / 2
@@ -73,7 +73,7 @@ def drawn_places(renderer, texture, angle):
     drawn = renderer.draw([texture], angle, SIZE, result="vec4(uv, 0.0, 1.0)")
     covered = drawn[..., 3] == 1
     uvs = drawn[..., :2].astype(float)
-    # OpenGL takes differences in squares of 2 x 2 pixels; those of the first row and column do.
+    # OpenGL takes differences in squares of 2 x 2 pixels; the first row and column stand for all.
     squares = uvs.reshape(SIZE // 2, 2, SIZE // 2, 2, 2)
     dx = np.linalg.norm(squares[:, 0, :, 1] - squares[:, 0, :, 0], axis=-1) * SIDE
     dy = np.linalg.norm(squares[:, 1, :, 0] - squares[:, 0, :, 0], axis=-1) * SIDE

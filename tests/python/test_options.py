@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Options of the native module: the library's defaults are the package's, and each one is set."""
+"""Options of the native module: each can be set, and defaults equal the package's."""
 
 import inspect
 
@@ -48,7 +48,7 @@ OPTIONS = [
     (reconstruction.reconstruct, _native.ReconstructOptions, reconstruction.CHECKS),
     (reconstruction.reconstruct_file, _native.ReconstructOptions, reconstruction.CHECKS),
 ]
-# Set by the functions themselves.
+# The package's functions set these themselves.
 INTERNAL = {"are_sides_known", "check_normals", "folder", "grid", "slices", "support"}
 
 

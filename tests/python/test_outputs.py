@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which file a command writes, and which ones it leaves alone."""
+"""The file that a command writes, and the files that it leaves alone."""
 
 import os
 import subprocess
@@ -91,7 +91,7 @@ def test_what_is_read_is_replaced_if_asked(folder, capsys):
 
 
 def test_names_that_differ_in_their_letters_alone(folder, capsys):
-    """One file on systems that do not tell them apart."""
+    """Names that differ in case are one file on case-insensitive systems."""
     (folder / "1.png").rename("caf\u00e9.png")
     for name in ("CAF\u00c9.PNG", "cafe\u0301.png"):
         assert "is read" in fails(capsys, 2, "resize", "caf\u00e9.png", "-o", name, *HALF)
@@ -102,7 +102,7 @@ def test_names_that_differ_in_their_letters_alone(folder, capsys):
 
 
 def test_a_file_is_never_read_after_another_became_it(folder, capsys):
-    """Even where files may be replaced."""
+    """Refused even where files may be replaced."""
     (folder / "2.png").rename("1_2.png")
     arguments = ("resize", "1.png", "1_2.png", "-o", "{name}_2.png", *HALF, "--overwrite")
     assert "'1_2.png' is read" in fails(capsys, 2, *arguments)
@@ -172,7 +172,7 @@ def test_unknown_words_are_named():
 
 
 def test_a_shell_that_fills_in_names(folder):
-    """As it was reported: a pattern of two files, and nothing else."""
+    """The case as reported: a pattern that matches two files, and no other argument."""
     if os.name == "nt":
         pytest.skip("its shell leaves patterns alone")
     before = contents(folder)

@@ -20,7 +20,7 @@ def scattered(count, seed=0):
 
 
 def looked_up(image, uvs):
-    """Clamped bilinear lookups in numpy alone."""
+    """Colors at UVs, by clamped bilinear lookups in numpy."""
     height, width = image.shape[:2]
     x, y = uvs[:, 0] * width - 0.5, uvs[:, 1] * height - 0.5
     i, j = np.floor(x).astype(int), np.floor(y).astype(int)

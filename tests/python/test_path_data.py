@@ -25,7 +25,7 @@ def number(source, odd):
 
 
 def path_data(source, odd=0.03):
-    """Path data of which some are wrong somewhere."""
+    """Random path data, some of them with errors."""
     text = ""
     for index in range(source.randint(1, 6)):
         letter = source.choice("Mm" if index == 0 else "MmZzLlHhVvCcSsQqTtAaAa")
@@ -72,7 +72,7 @@ def test_agrees_with_regular_expressions():
 
 
 def test_arcs_are_on_their_ellipses():
-    """All along, and on the side that their flags ask for."""
+    """Arcs follow their ellipses all along, on the side that their flags ask for."""
     source = random.Random(2)
     for _ in range(400):
         rx, ry, turn = source.uniform(1, 40), source.uniform(1, 40), source.uniform(-400, 400)
@@ -97,7 +97,7 @@ def test_arcs_are_on_their_ellipses():
 
 @pytest.mark.parametrize("radius", ["1e140", "1e156", "1e303", "1e308"])
 def test_arcs_of_ellipses_that_are_far_larger_than_their_chord(radius):
-    """They are lines, or end where they are told to; the fuzzer found one that did neither."""
+    """Such arcs become lines or reach their end points; the fuzzer found one that did neither."""
     for radii in (f"{radius} 1", f"1 {radius}", f"{radius} {radius}"):
         for flags in ("0 0", "0 1", "1 0", "1 1"):
             outline, is_whole = read_path(f"M 0 9 A {radii} 0 {flags} 0 6 A {radii} 0 {flags} 3 6")

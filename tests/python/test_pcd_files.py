@@ -194,7 +194,7 @@ def test_an_image_of_depths():
     x, y, z = points.positions.reshape(480, 640, 3).transpose(2, 0, 1)
     seen = np.isfinite(z)
     assert 0.5 < seen.mean() < 1
-    # A pinhole camera: what is seen at a pixel lies on the ray through it.
+    # A pinhole camera: the point seen at a pixel lies on the ray through it.
     columns, rows = np.meshgrid(np.arange(640), np.arange(480))
     for along, pixels in [(x, columns), (y, rows)]:
         slope, middle = np.polyfit(pixels[seen], (along / z)[seen], 1)

@@ -18,7 +18,7 @@ oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not in
 
 AP1 = (0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767)
 REC709 = (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)
-# As ACES and SMPTE publish them, to Rec. 709.
+# Matrices to Rec. 709, as published by ACES and SMPTE.
 FROM_AP1 = np.array(
     [[1.70505, -0.62179, -0.08326], [-0.13026, 1.14080, -0.01055], [-0.02400, -0.12897, 1.15297]]
 )
@@ -39,12 +39,12 @@ COMMANDS = {
     "mipmaps": ("mipmaps", "{source}", "-o", "{target}"),
 }
 INSIDE = (0.5, 0.4, 0.25)
-"""A color that all spaces have within those of sRGB."""
+"""A color inside sRGB's gamut and all others."""
 OUTSIDE = (0.1, 0.9, 0.2)
 
 
 def srgb_light(values):
-    """Returns light of sRGB, by its definition."""
+    """Decodes sRGB to linear light, by its definition."""
     values = np.asarray(values, np.float64)
     return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
 
@@ -114,7 +114,7 @@ def light_of(path):
 
 
 ENDINGS = {"mipmaps": ("exr", "png", "tif", "tx")}
-"""What a command writes, beside OpenEXR and PNG files."""
+"""Extensions that a command can write, besides OpenEXR and PNG."""
 
 
 @pytest.mark.parametrize(
@@ -240,7 +240,7 @@ def test_colors_of_png_files(tmp_path, chunks, light, matrix, kind):
     assert run("mipmaps", source, "-o", tmp_path / "levels.png") == 0
     step = 0.51 / most * 2.4 + 1 / 4096
     assert np.abs(light_of(tmp_path / "levels.00.png")[0] - expected).max() < step
-    # A PNG file keeps both the numbers and what they mean.
+    # A PNG file keeps both the numbers and their color space.
     assert run("resize", source, "-o", tmp_path / "out.png", "--percent", "50") == 0
     made = chunks_of(tmp_path / "out.png")
     said = [one for one in chunks if one[0] != b"gAMA" or (b"sRGB", b"\0") not in chunks]
@@ -275,7 +275,7 @@ def icc_profile(matrix, curves, kind=b"RGB "):
 
 
 ADOBE_RGB = [[0.60974, 0.20528, 0.14919], [0.31111, 0.62567, 0.06322], [0.01947, 0.06087, 0.74457]]
-"""As Adobe publishes it, for D50."""
+"""The matrix that Adobe publishes, for D50."""
 POWER = b"curv" + bytes(4) + struct.pack(">IH", 1, 563)
 SRGB_PARAMETERS = [
     round(one * 65536) for one in (2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045)
@@ -286,7 +286,7 @@ TABLE = b"curv" + bytes(4) + struct.pack(">I", 64) + SAMPLES.tobytes()
 
 
 def by_icc(pixels, profile):
-    """Returns what another library makes of bytes, in sRGB."""
+    """Converts bytes to sRGB by another library."""
     cms = pytest.importorskip("PIL.ImageCms")
     image = pytest.importorskip("PIL.Image").fromarray(pixels)
     source = cms.ImageCmsProfile(io.BytesIO(profile))

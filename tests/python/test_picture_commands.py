@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The commands `resize` and `resample`: pictures as the package's functions make them."""
+"""The commands `resize` and `resample`: their pictures, against the package's functions."""
 
 import numpy as np
 import prefilter

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Orientation, channels and sizes of picture files, and that no date is in what is written."""
+"""Orientation, channels and sizes of picture files, and that files written hold no date."""
 
 import re
 
@@ -12,7 +12,7 @@ from prefilter.workflows import memory, openimageio
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
 
-# What is seen of an array by the orientation of EXIF: where its first row and first column are.
+# The upright image of an array by its EXIF orientation: where its first row and column are.
 UPRIGHT = {
     1: lambda rows: rows,
     2: lambda rows: rows[:, ::-1],

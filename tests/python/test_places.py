@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where files are written: regular files are replaced, through links; all else is left alone."""
+"""Writing over files: regular files are replaced, through links; anything else is left alone."""
 
 import io
 import os

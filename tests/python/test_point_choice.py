@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Points of some classes, of some returns, and of a box."""
+"""Choosing points by class, by return, and by box."""
 
 import numpy as np
 import prefilter
@@ -11,7 +11,7 @@ COUNT = 200_000  # More than are read at once.
 
 
 def scan(seed=0, count=COUNT):
-    """Points with all that may be known of them."""
+    """Points with all attributes."""
     random = np.random.default_rng(seed)
     of = random.integers(0, 5, count)
     return prefilter.ScanPoints(
@@ -28,7 +28,7 @@ def scan(seed=0, count=COUNT):
 
 
 def file_of(folder, points, names=("Classification", "ReturnNumber", "NumberOfReturns")):
-    """A file of points that other programs may have named."""
+    """A file of points, with attribute names of other programs."""
     kinds = [*(("double", axis) for axis in "xyz"), *(("float", f"n{axis}") for axis in "xyz")]
     kinds += [("float", "confidence"), *(("uchar", name) for name in names), ("float", "Intensity")]
     columns = [points.positions, points.normals, points.weights[:, None]]
@@ -45,7 +45,7 @@ def file_of(folder, points, names=("Classification", "ReturnNumber", "NumberOfRe
 
 
 def expected(points, classes=None, returns="all", box=None):
-    """Which points are chosen, one by one."""
+    """Whether each point is chosen, tested one by one."""
     names = ("classification", "return_number", "number_of_returns")
     columns = zip(points.positions, *(points.attributes[name] for name in names), strict=True)
     for position, own, number, of in columns:
@@ -186,7 +186,7 @@ def test_surfaces_of_chosen_points(tmp_path):
 
 
 def test_grids_and_faces_count_before_points_are_chosen(tmp_path):
-    """Faces name points of the whole file; the normals of those that are left are theirs."""
+    """Faces index points of the whole file; chosen points keep the normals of their faces."""
     side = 20
     x, y = np.meshgrid(np.arange(side), np.arange(side), indexing="ij")
     rows = [(float(a), float(b), 0.0) for a, b in zip(x.ravel(), y.ravel(), strict=True)]

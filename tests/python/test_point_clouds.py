@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Points thinned, without outliers, and scans moved onto each other."""
+"""Thinning points, removing outliers, and aligning scans."""
 
 import numpy as np
 import prefilter
@@ -16,7 +16,7 @@ def cloud(seed=0, count=4000):
 
 
 def distances(a, b):
-    """From each of `a` to each of `b`."""
+    """Distances from each of `a` to each of `b`."""
     return np.sqrt(((a[:, None] - b[None]) ** 2).sum(axis=2))
 
 
@@ -66,7 +66,7 @@ def test_subsampling_of_odd_points(method):
     assert len(prefilter.subsample_points(bad, 1.0, method=method)) == 0
     far = np.array([(5e5, 4e6, 100.0)]) + cloud(count=500)
     assert len(prefilter.subsample_points(far, 0.05, method=method)) > 50
-    # All are kept where none are near.
+    # Points without near neighbors are all kept.
     apart = np.arange(300.0).reshape(100, 3)
     assert len(prefilter.subsample_points(apart, 1.0, method=method)) == 100
 
@@ -83,7 +83,7 @@ def test_subsampling_refuses():
 
 
 def outliers_of(points, neighbours, factor):
-    """The definition, by all distances."""
+    """Outliers by definition, from all distances."""
     between = distances(points, points)
     order = np.argsort(between, axis=1, kind="stable")[:, 1 : neighbours + 1]
     own = np.take_along_axis(between, order, axis=1).mean(axis=1)
@@ -115,7 +115,7 @@ def test_outliers_of_odd_points():
     np.testing.assert_array_equal(
         prefilter.find_outliers(points), [True, False, False, True, False, False]
     )
-    # Copies count once: a stray that is there a hundred times stays one.
+    # Copies count once: a hundred copies of an outlier are still an outlier.
     copies = np.concatenate([cloud(count=500), np.full((100, 3), 5.0)])
     assert prefilter.find_outliers(copies)[500:].all()
     for options, message in [
@@ -175,7 +175,7 @@ def test_scans_are_moved_back(count, noise, offset, allowed):
     found = prefilter.align_scans(scans)
     np.testing.assert_array_equal(found.matrices[0], np.eye(4))
     for scan, matrix, moved_away in zip(scans, found.matrices, motions, strict=True):
-        # Where its points were in the place of the first scan.
+        # Its points' positions in the frame of the first scan.
         local = (scan.positions - moved_away[:3, 3]) @ moved_away[:3, :3]
         expected = local @ motions[0][:3, :3].T + motions[0][:3, 3]
         aligned = scan.moved(matrix).positions
@@ -187,7 +187,7 @@ def test_scans_are_moved_back(count, noise, offset, allowed):
 
 
 def farthest(scans, motions, found):
-    """How far a point is from where the first scan has it, after that."""
+    """The greatest distance of an aligned point from its position in the first scan's frame."""
     most = 0.0
     for scan, matrix, away in zip(scans, found.matrices, motions, strict=True):
         local = (scan.positions - away[:3, 3]) @ away[:3, :3]
@@ -199,7 +199,7 @@ def farthest(scans, motions, found):
 
 @pytest.mark.parametrize("offset", [(0, 0, 0), (5e5, 4e6, 100)])
 def test_a_surface_brings_five_scans_back_to_a_tenth_of_a_cell(offset):
-    """They were off by a cell and more; the oracle is the motion of each."""
+    """Scans start off by a cell and more; the oracle is each scan's motion."""
     scans, motions = body_scans(5, points=8_000, noise=0.005, offset=offset)
     report = prefilter.ReconstructionReport()
     prefilter.reconstruct(scans, align="surface", report=report)
@@ -228,7 +228,7 @@ def test_normals_that_are_given_may_point_inward():
     for scan in scans:
         normals = prefilter.estimate_normals(scan.positions, direction="outward")
         turned.append(prefilter.ScanPoints(scan.positions, -normals))
-    # Seen from within or from without, as long as all agree.
+    # Scans may be seen from inside or from outside, if all agree.
     center = scans[0].positions.mean(axis=0)
     for sign in (-1, 1):
         seen = []
@@ -264,7 +264,7 @@ def test_scans_apart_and_empty_ones_stay():
 
 
 def test_a_plane_slides_nowhere():
-    """Along a plane nothing is known: a scan is turned and lifted into it, and not moved along."""
+    """A plane fixes no motion along it: a scan is turned and lifted into it, and not slid along."""
     random = np.random.default_rng(3)
     first, second = random.random((2, 3000, 3)) * (1, 1, 0)
     tilted = second @ turn((1, 2, 0), 0.02).T + (0, 0, 0.01)

@@ -23,7 +23,7 @@ def areas(points, triangles):
 
 
 def windings(points, places):
-    """Returns how often a polygon winds around places, by the angles at which its sides appear."""
+    """Returns winding numbers of a polygon around points, by the angles that its sides subtend."""
     points = np.array(points, np.float64)[:, :2]
     found = np.empty(len(places))
     for number, place in enumerate(places):
@@ -35,7 +35,7 @@ def windings(points, places):
 
 
 def check(points, count=400):
-    """Compares how many triangles cover random places with the winding number there."""
+    """Compares the number of triangles that cover random points with the winding number there."""
     triangles = triangulated(points)
     points = np.array([point[:2] for point in points], np.float64)
     low, high = points.min(axis=0), points.max(axis=0)
@@ -47,7 +47,7 @@ def check(points, count=400):
 
 
 def star(count, seed):
-    """Returns a polygon that is seen as a whole from its middle."""
+    """Returns a random star-shaped polygon."""
     random = np.random.default_rng(seed)
     angles = np.sort(random.random(count)) * 2 * math.pi
     angles = np.arange(count) / count * 2 * math.pi if np.diff(angles).max() > 3 else angles
@@ -75,7 +75,7 @@ RING = [
     *((0, 0), (4, 0), (4, 4), (0, 4), (0, 0)),
     *((1, 1), (1, 3), (3, 3), (3, 1), (1, 1)),
 ]
-"""A square with a hole, joined by an edge that is there twice."""
+"""A square with a hole, joined by an edge that occurs twice."""
 TWO_HOLES = [
     *((0, 0), (9, 0), (9, 4), (0, 4), (0, 0), (1, 1), (1, 3), (3, 3), (3, 1)),
     *((6, 1), (6, 3), (8, 3), (8, 1), (6, 1), (3, 1), (1, 1)),
@@ -85,7 +85,7 @@ DUMBBELL = [
     *((0, 0), (1, 0), (2, 1), (3, 0), (4, 0), (4, -1), (3, -1)),
     *((3, 0), (2, 1), (1, 0), (1, -1), (0, -1)),
 ]
-"""Two squares that a bent line joins, which is there twice."""
+"""Two squares that a bent line joins, which occurs twice."""
 EIGHT = [(0, 0), (2, 0), (1, 1), (2, 2), (0, 2), (1, 1)]
 """Two triangles that touch at a corner."""
 SHAPES = {
@@ -142,7 +142,7 @@ def test_straight_corners_leave_no_triangle_without_an_area():
 
 
 def test_each_side_is_a_side_of_one_triangle():
-    """So what was closed stays closed."""
+    """A closed surface of polygons therefore stays closed."""
     for name in ("u", "ring", "comb", "straight"):
         triangles = check(SHAPES[name])
         sides = [tuple(side) for t in triangles for side in (t[:2], t[1:], t[[2, 0]])]
@@ -198,7 +198,7 @@ def test_wrong_arguments():
 
 
 def test_many_corners_take_a_moment():
-    """Random stars are seen from their middles, so each has an area that polar coordinates give."""
+    """The area of a random star-shaped polygon follows from polar coordinates."""
     points = star(3000, 3)
     x, y = np.array(points).T
     expected = (x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""docs/python.md: its signatures are the package's, and it names all public ones.
+"""docs/python.md: its signatures match the package's, and it lists all public names.
 
-Its samples and those of docs/python_examples.md run, and have an example of each public name.
+Its samples and the ones in docs/python_examples.md run, and use each public name.
 """
 
 import ast
@@ -18,7 +18,7 @@ import pytest
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = (DOCS / "python.md").read_text(encoding="utf-8")
 EXAMPLES = (DOCS / "python_examples.md").read_text(encoding="utf-8")
-# What stands before the dot of a method in the tables.
+# The names before the dot of methods in the tables.
 INSTANCES = {
     "surface": prefilter.Surface,
     "octree": prefilter.Octree,
@@ -29,7 +29,7 @@ CALL = re.compile(r"([\w.]+)\((.*)\)")
 
 
 def spans() -> list[str]:
-    """What the first columns of the tables hold as code."""
+    """The code in the first columns of the tables."""
     rows = re.findall(r"(?m)^\| (`.*?) \| ", PAGE)
     return [span for row in rows for span in re.findall(r"`([^`]+)`", row)]
 
@@ -42,7 +42,7 @@ def owner_of(path: str) -> tuple[object, str]:
 
 
 def parameters(function: Callable[..., object], *, is_method: bool) -> list[str]:
-    """The names of the parameters, with the star that those after it are given by name."""
+    """Names of the parameters, with the star before keyword-only ones."""
     found = list(inspect.signature(function).parameters.values())[1 if is_method else 0 :]
     names: list[str] = []
     for each in found:
@@ -61,7 +61,7 @@ def of_the_package(path: str) -> list[str]:
 
 
 def wrong_signatures(told: list[str]) -> list[str]:
-    """Those that differ from the package's; "..." stands for parameters of the one before."""
+    """Signatures that differ from the package's; "..." repeats the previous one's parameters."""
     wrong = []
     before: set[str] = set()
     for path, listed in (match.groups() for match in map(CALL.fullmatch, told) if match):
@@ -115,7 +115,7 @@ def samples(page: str) -> list[str]:
 
 
 def used_names(code: Iterable[str]) -> set[str]:
-    """The names of the package that code has, as `prefilter.name`."""
+    """The package's names that code uses, as `prefilter.name`."""
     return {
         node.attr
         for sample in code
@@ -137,7 +137,7 @@ def test_only_code_that_uses_a_name_is_an_example():
 
 
 def run_samples(page: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, object]:
-    """What is left of the samples, pasted one after another into an empty session and folder."""
+    """The scope after pasting all samples, in turn, into an empty session and folder."""
     monkeypatch.chdir(folder)
     scope: dict[str, object] = {}
     for sample in samples(page):
@@ -158,7 +158,7 @@ def test_samples_run_one_after_another(tmp_path, monkeypatch):
 
 
 def test_examples_run_one_after_another(tmp_path, monkeypatch):
-    """They assert what they show."""
+    """The examples assert their own results."""
     run_samples(EXAMPLES, tmp_path, monkeypatch)
     assert len(samples(EXAMPLES)) >= 20
     assert {"texture.dds", "texture.exr", "ball.ply"} <= {each.name for each in tmp_path.iterdir()}

@@ -30,14 +30,14 @@ def volume(positions, quads):
 
 
 def sides(quads):
-    """Each side as it runs around its quad, and which of the undirected edges it is."""
+    """Each side in its quad's direction, and the index of its undirected edge."""
     directed = np.concatenate([quads[:, [k, (k + 1) % 4]] for k in range(4)])
     _, edges = np.unique(np.sort(directed, axis=1), axis=0, return_inverse=True)
     return directed, edges.reshape(-1)
 
 
 def assert_closed(positions, quads):
-    """Every edge is there once each way, every vertex is used, and has one fan."""
+    """Asserts that edges occur once in each direction, and that each vertex has one fan."""
     directed, edges = sides(quads)
     assert (np.bincount(edges) == 2).all()
     assert len(np.unique(directed, axis=0)) == len(directed)
@@ -60,9 +60,10 @@ def euler(positions, quads):
 
 
 def most_turn(positions, quads, sides=None):
-    """The largest angle between two triangles that quads are cut into, in degrees.
+    """The largest angle between triangles at an edge, in degrees, when quads are halved.
 
-    With `sides`, the normals of what they are on, less how much more those turn than 90 degrees.
+    `sides` has the true normal under each triangle; their own angle beyond 90 degrees is
+    subtracted.
     """
     triangles = halves(quads)
     found, _ = normals(positions, triangles)
@@ -112,7 +113,7 @@ def test_turned_cubes_have_their_faces_edges_and_corners(seed):
 @pytest.mark.parametrize("height", [8.0, 5.0, 16 / 3])
 @pytest.mark.parametrize("depth", [4, 5, 6])
 def test_upright_boxes_have_their_corners(height, depth):
-    """At height 8 upright sides run through centers of cells: many places are two at once."""
+    """At height 8 upright sides run through cell centers, so many positions are ambiguous."""
     made = box((-1, -1, 0), (1, 1, height))
     mesh = made.positions, made.triangles
     tree = tree_of(mesh, depth=depth)
@@ -166,9 +167,9 @@ def beside(quads, count):
 
 
 def test_quads_are_regular_where_there_are_no_edges():
-    """Of Blender's Voxel Remesh sides differ by 0.22 of their mean, the shortest by more than half.
+    """No vertex is far from the mean of its neighbors, and sides have similar lengths.
 
-    No vertex is far from the middle of those beside it.
+    Sides from Blender's Voxel Remesh differ by 0.22 of their mean, the shortest by more than half.
     """
     ball = sphere(10.0, 6)
     tree = prefilter.voxelize(

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""KTX 2 files read: what `write_ktx2` writes, and what other tools write for glTF.
+"""Reading KTX 2 files by `write_ktx2`, and files that other tools write for glTF.
 
-The files in ktx2/ are those of Khronos' `ktx create --generate-mipmap` of one small picture, with
-`--encode basis-lz`, or `--encode uastc --zstd 5`; its texels by `ktx transcode --target rgba8`.
+Khronos' `ktx create --generate-mipmap` wrote the files in ktx2/ from one small picture, using
+`--encode basis-lz` or `--encode uastc --zstd 5`; the texels are by `ktx transcode --target rgba8`.
 """
 
 import io

@@ -21,7 +21,7 @@ def encode(linear):
 
 
 def shown(image, uvs):
-    """What Cycles shows of an 8-bit sRGB image."""
+    """Cycles' values of an 8-bit sRGB image."""
     return decode(bilinear(encode(image.astype(np.float64)), uvs, CLAMP))
 
 

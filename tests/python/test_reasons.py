@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What users are told of errors."""
+"""Error messages for users."""
 
 import errno
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Points to surfaces, against the surfaces that the points were taken from."""
+"""Surfaces from points, against the surfaces that the points were sampled from."""
 
 import re
 from pathlib import Path

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The command `reconstruct`: the file that the package's function writes."""
+"""The command `reconstruct`, against the file that the package's function writes."""
 
 import gzip
 
@@ -50,7 +50,7 @@ def test_an_isovalue_of_ones_own(scan, tmp_path):
 
 
 def test_normals_face_a_viewpoint(tmp_path, capsys):
-    """Each file has its own viewpoint, inside: the balls are hollows."""
+    """Each file has a viewpoint, inside its ball: the balls come out hollow."""
     scans = []
     for k, x in enumerate((0.0, 4.0)):
         scans.append(tmp_path / f"{k}.xyz")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Clouds that are nasty and yet have a surface; weights, attributes, and surfaces that end."""
+"""Difficult clouds that still have a surface; weights, attributes, and open surfaces."""
 
 import numpy as np
 import prefilter
@@ -20,7 +20,7 @@ def _rebuilt(points, normals=CLOUD.normals, **options):
 
 
 def _assert_same(found, expected):
-    """Compares up to rounding, which may flip the diagonal of a quadrilateral in the D4 basis."""
+    """Compares up to rounding, which may flip a quadrilateral's diagonal in the D4 basis."""
     assert len(found[0]) == len(expected[0])
     assert len(found[1]) == len(expected[1])
     volumes = [solids.mesh_volume(*mesh[:2]) for mesh in (found, expected)]
@@ -30,7 +30,7 @@ def _assert_same(found, expected):
 
 
 def _edges(triangles):
-    """How many triangles each edge has."""
+    """The number of triangles at each edge."""
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     return np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)[1]
 
@@ -81,7 +81,7 @@ def test_far_from_the_origin(wavelet):
 
 @BASES
 def test_two_scans_that_overlap(wavelet):
-    """One of the whole, and one of a half, taken again."""
+    """A scan of the whole, and a second one of a half."""
     again = sphere(20_000, seed=1)
     upper = again.points[:, 2] > 0.0
     points = np.concatenate([CLOUD.points, again.points[upper]])
@@ -139,7 +139,7 @@ def test_only_the_ratios_of_weights_count(scale):
     weights = np.random.default_rng(4).uniform(0.5, 1.0, len(CLOUD.points))
     expected = _rebuilt(CLOUD.points, weights=weights)
     found = _rebuilt(CLOUD.points, weights=scale * weights)
-    # Rounding may choose between two that are alike, so that numbers of vertices differ.
+    # Rounding may decide between equivalent choices, so numbers of vertices may differ.
     assert len(found[1]) == len(expected[1])
     for a, b in ((found, expected), (expected, found)):
         off = prefilter.nearest_points(a[0].astype(np.float64), b[0], b[1])[2]
@@ -148,7 +148,7 @@ def test_only_the_ratios_of_weights_count(scale):
 
 @BASES
 def test_a_weight_of_two_is_a_second_copy(wavelet):
-    """With equally dense points, as all weights are relative to their mean."""
+    """Points are equally dense everywhere, as the mean weight of a point assumes."""
     weights = np.full(len(CLOUD.points), 2.0)
     points = np.concatenate([CLOUD.points, CLOUD.points])
     normals = np.concatenate([CLOUD.normals, CLOUD.normals])
@@ -173,7 +173,8 @@ def test_colors_arrive_where_they_were(wavelet, depth):
     )
     assert found.shape == (len(positions), 3)
     assert found.dtype == np.float32
-    # Colors mix over samples up to a cell away; weights may enlarge cells fourfold.
+    # Colors come from samples up to a cell away. Where there are only as many samples as cells,
+    # the cells count four times as large.
     reach = max(2.0 * report.cell, 0.1)
     for is_side, color in ((positions[:, 0] > reach, red), (positions[:, 0] < -reach, blue)):
         assert is_side.any()
@@ -195,19 +196,19 @@ def test_a_trimmed_surface_ends_where_the_points_do(wavelet, depth, trim):
     positions, triangles, report = _rebuilt(
         points, normals, depth=depth, wavelet=wavelet, trim=trim
     )
-    # Distances from the half sphere; points below are nearest to its border.
+    # Distances from the half sphere; vertices below it are measured from its border.
     radius = np.hypot(positions[:, 0], positions[:, 1])
     distances = np.where(
         positions[:, 2] > 0,
         np.abs(np.linalg.norm(positions, axis=1) - 1),
         np.hypot(radius - 1, positions[:, 2]),
     )
-    # The means of samples in cells stand for these; where trim is large, in larger cells.
+    # Trimming measures to the means of samples in cells; a large trim uses larger cells.
     assert distances.max() < (1.25 * trim + 1.0) * report.cell
     if trim * report.cell > 1.0:
         return
     assert (_edges(triangles) == 1).any()
-    # None of it is missing where points are.
+    # The surface has no gaps where there are points.
     corners = positions[triangles]
     area = np.linalg.norm(
         np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1

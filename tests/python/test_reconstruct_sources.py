@@ -51,7 +51,7 @@ def test_a_file_gives_the_same_surface_as_its_arrays(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("count", [2, 3])
 def test_parts_give_the_same_surface_as_the_whole(tmp_path: Path, count: int) -> None:
-    """To rounding, wherever they come from."""
+    """Results agree up to rounding, for files and for scans in memory."""
     expected = prefilter.reconstruct(TORUS.points, TORUS.normals, depth=DEPTH)
     parts = [slice(i, None, count) for i in range(count)]
     paths = [_written(tmp_path, f"{i}.ply", TORUS, part) for i, part in enumerate(parts)]
@@ -158,7 +158,7 @@ def test_attributes_of_several(tmp_path: Path) -> None:
 
 
 def test_weights_of_scans() -> None:
-    """A second torus, larger, of no weight: as if it were not there."""
+    """A second, larger torus of weight 0 does not count."""
     count = len(TORUS.points)
     scans = [
         prefilter.ScanPoints(TORUS.points, TORUS.normals),

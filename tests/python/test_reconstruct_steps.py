@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`reconstruct` in steps: by several processes, bit for bit what one makes."""
+"""`reconstruct` in steps: several processes give the same bits as one."""
 
 import gzip
 import json
@@ -46,7 +46,7 @@ def scans(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def expected(scans):
-    """Returns what one process makes, by its flags."""
+    """Returns a function from flags to the file that one process writes."""
     made: dict[tuple[str, ...], bytes] = {}
 
     def of(*flags):
@@ -226,7 +226,7 @@ def test_finished_steps_are_not_repeated(scans, expected, tmp_path, capsys):
     assert told.count("Up to date") == 4 + 4 + 1 + 4
     after = {path: path.stat().st_mtime_ns for path in (tmp_path / "work").iterdir()}
     assert {path for path in after if after[path] != times[path]} == {lost}
-    # Other settings are another work.
+    # Other settings invalidate all steps.
     assert steps(scans, tmp_path, "--no-fit") == expected("--no-fit")
     assert "Up to date" not in capsys.readouterr().out
 

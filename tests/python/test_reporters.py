@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""How commands tell of progress and results, to people and to programs."""
+"""Reports of commands on progress and results, for people and for programs."""
 
 import json
 import os
@@ -65,7 +65,7 @@ def test_people_get_a_line_each_quarter_of_all_files(pictures, capsys):
 
 
 def test_a_program_that_ends_early_says_so(tmp_path):
-    """As from a farm: what the voice of one run says is gone in the next."""
+    """Runs of a farm in one process: a reporter of one run is gone in the next."""
     code = (
         "from prefilter.commands import program, cli_common\n"
         "def stop(): raise KeyboardInterrupt\n"
@@ -181,7 +181,7 @@ def test_what_nobody_foresaw_asks_for_a_report(tmp_path, monkeypatch, capsys):
 
 
 def test_words_of_other_libraries_are_not_ours(tmp_path, monkeypatch, capsys):
-    """They say nothing to users, who can act on what is ours."""
+    """Their messages mean nothing to users, who can act on this package's own."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     assert program.run_to_status(lambda: json.loads("{")) == 1
     assert "unexpected failure (JSONDecodeError" in capsys.readouterr().err

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images through affine and projective maps, against positions and Jacobians by numpy."""
+"""Images under affine and projective maps, against positions and Jacobians by numpy."""
 
 import numpy as np
 import prefilter

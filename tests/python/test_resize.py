@@ -103,7 +103,7 @@ def closest(image, width, height, wrap, low, high):
     products_y, texels_y = tents(image.shape[0], height, wrap)
     root = np.linalg.cholesky(np.kron(products_y, products_x))
     shape = (height, width, image.shape[2])
-    # The solver wants some room between bounds.
+    # The solver needs a gap between bounds.
     low, high = np.broadcast_to(low, shape), np.broadcast_to(high, shape) + 1e-12
     result = np.empty(shape)
     for c in range(image.shape[2]):
@@ -173,7 +173,7 @@ def test_least_squares_are_dense_least_squares(wrap, constrained, ringing):
 @pytest.mark.parametrize("wrap", WRAPS)
 def test_without_ringing_values_are_those_around(filter, wrap):
     for k, (width, height, new_width, new_height) in enumerate((*SIZES, (40, 3, 3, 40))):
-        # A step, and little else: filters overshoot beside it.
+        # A step edge: filters overshoot beside it.
         image = 0.01 * image_of(width, height, 1 + k % 4)
         image[height // 3 :, width // 3 :] += 2
         image = image.astype(np.float32)
@@ -323,7 +323,7 @@ def test_colors_count_by_their_alpha(filter, colors):
     multiplied = image * image[..., -1:]
     multiplied[..., -1] = image[..., -1]
     for width, height in ((30, 27), (83, 90)):
-        # Bounds of colors are none of what is multiplied.
+        # The bounds of colors do not apply to premultiplied colors.
         options = {"filter": filter, "ringing": "allow"}
         found = prefilter.resize(image, width, height, **options)
         plain = prefilter.resize(multiplied, width, height, premultiplied=True, **options)

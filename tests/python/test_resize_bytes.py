@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Resizing bytes and words, against dense sums of float64 that are rounded."""
+"""Resizing bytes and 16-bit words, against rounded dense sums in float64."""
 
 from itertools import product
 
@@ -30,7 +30,7 @@ def encoded(values):
 
 
 def expected(image, width, height, filter, wrap, *, srgb, has_alpha):
-    """What the bytes of the result are, before they are rounded."""
+    """The result in units of bytes, before rounding."""
     light = image / 255
     colors = min(image.shape[2], 3)
     if srgb:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Declared and actual types of results agree: mypy checks this module, too."""
+"""Results have their annotated types: mypy checks this module too."""
 
 import pickle
 from typing import Any, assert_type

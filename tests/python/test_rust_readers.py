@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""DDS and KTX 2 files as the crates read them that bevy and users of wgpu take, where cargo is."""
+"""DDS and KTX 2 files, read by the crates of bevy and wgpu programs, if cargo is installed."""
 
 import os
 import re
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.skipif(shutil.which("cargo") is None, reason="cargo is 
 
 @pytest.fixture(scope="module")
 def read():
-    """What the program says of files, a line each, split at spaces."""
+    """A function that runs the program on files and returns its lines, split at spaces."""
     environment = {**os.environ, "CARGO_TARGET_DIR": str(TARGET)}
 
     def cargo(*words):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Nothing is called whose last bits differ between C libraries, processors or NumPys.
+"""No call to functions whose last bits differ between C libraries, processors or NumPys.
 
 The C++ library and the package have elementary functions of their own; tests/native/hashes
-compares what comes out.
+compares their results.
 """
 
 import ast
@@ -27,7 +27,8 @@ _OTHERS = re.compile(
     r"\blong double\b|\bfma[fl]?(?=\s*\()"
     r"|std::\w+_distribution\b|std::(?:shuffle|sample|hash|reduce)\b|\bqsort\b"
 )
-# Of Python's math and NumPy; products of matrices are BLAS's, whose order of sums differs.
+# Functions of Python's math and NumPy; matrix products are left to BLAS, whose summation order
+# differs.
 _PYTHON = re.compile(rf"{FUNCTIONS}|arc(?:sin|cos|tan)h?|arctan2|power|float_power|dist|sumprod")
 _MATRICES = {"dot", "vdot", "inner", "matmul", "einsum", "tensordot", "linalg", "fft", "random"}
 

@@ -13,8 +13,10 @@ ALONG = np.array([step / 4 + side for step in range(5) for side in (-1e-4, 1e-4)
 
 @pytest.fixture(scope="module", params=["tent", "lanczos2"])
 def case(request):
-    """A table, and the levels of all images that are 1 at one texel and 0 elsewhere: the channels
-    of a sample are what the image's texels are weighted with."""
+    """A table, and the levels of all images that are 1 at one texel and 0 elsewhere.
+
+    The channels of a sample are then the weights of the image's texels.
+    """
     table = prefilter.SamplingTable.build(request.param, texels=5)
     image = np.eye(SIZE * SIZE, dtype=np.float32).reshape(SIZE, SIZE, -1)
     return table, prefilter.sampling_levels(image, request.param, wrap="repeat")

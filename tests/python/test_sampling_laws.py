@@ -39,7 +39,7 @@ def test_errors_of_samples_of_noise_are_those_of_the_table(filter):
             expected = dense(image, filter, coordinates, scale)
             for name, chosen in (("table", table), ("trilinear", "trilinear")):
                 found = prefilter.sample(levels, chosen, coordinates, scale, wrap="repeat")
-                # Of cells of 8 x 8 texels; the whole domain is eight times what the table tells of.
+                # Cells have 8 x 8 texels; the whole domain is eight times the table's part.
                 squares[name] += weight / 4 * 64 * np.mean((found - expected) ** 2)
     section = table.section(3)
     assert squares["table"] == pytest.approx(8 * section.errors.sum(), rel=0.1)

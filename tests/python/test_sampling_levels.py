@@ -17,7 +17,7 @@ SIZES = [(8, 8), (13, 6), (1, 7), (5, 1), (1, 1)]
 
 
 def weights_of_nested(filter, size, level, wrap):
-    """Of texels 2^level as wide, as many as reach over all of an axis."""
+    """Weights of texels 2^level times as wide, as many as cover an axis."""
     width = 2**level
     centers = (np.arange(-(-size // width)) + 0.5) * width
     return weights_at(filter, centers, width, size, wrap)
@@ -43,7 +43,7 @@ def test_levels_are_the_kernel_at_the_centers_of_their_texels(filter):
                     image.astype(float),
                 )
                 assert found.dtype == np.float32
-                # Values around 1, of filters whose lobes sum to 1.6 at the most.
+                # Values are around 1, and the filters' absolute weights sum to 1.6 at most.
                 np.testing.assert_allclose(found, expected, rtol=0, atol=4 * tolerance_of(filter))
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Sampling tables: arguments out of range, and files that hold none."""
+"""Sampling tables: arguments out of range, and invalid files."""
 
 import json
 import re
@@ -12,7 +12,7 @@ import pytest
 
 @pytest.fixture(scope="module")
 def contents(tmp_path_factory):
-    """What a small table's file holds."""
+    """The text of a small table's file."""
     path = tmp_path_factory.mktemp("table") / "table.json"
     prefilter.SamplingTable.build("tent", texels=3, subdomains=(2, 2, 1)).save(path)
     return path.read_text()

@@ -8,8 +8,8 @@ import pytest
 import sampling_oracle as oracle
 from kernels import FILTERS
 
-# As shares of errors, by how many levels there are. Kernels are fitted to 1e-5; with two levels,
-# texels enter the filter one by one, and this side's quadrature does not heed the kinks.
+# Relative tolerances of errors, by the number of levels. Kernels are fitted to 1e-5; with two
+# levels, texels enter the filter one by one, and the oracle's quadrature ignores the kinks.
 TOLERANCES = {3: 2e-3, 2: 1e-2, 1: 1e-3}
 # Below that an error is rounding.
 NO_ERROR = 1e-9
@@ -192,7 +192,7 @@ def test_weights_that_heed_ramps_are_the_best_for_their_texels(filter, levels):
     least = system.solve(range(5))[1]
     found = system.value(section.coefficients[0])
     assert found == pytest.approx(least, rel=1e-4, abs=NO_ERROR)
-    # Those that do not heed them are far from that.
+    # Tables that ignore the ramp weight are far from that.
     free = prefilter.SamplingTable.build(
         filter, texels=5, subdomains=(2, 2, 1), ramp_weight=0.0, spectrum="white"
     )

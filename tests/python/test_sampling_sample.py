@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Samples of mipmaps, against sums texel by texel that are worked out from what tables say."""
+"""Samples of mipmaps, against sums texel by texel from the tables' weights."""
 
 from itertools import product
 from math import ceil, floor, log2
@@ -21,7 +21,7 @@ EIGHT = TABLES[0]
 
 
 def levels_of(width, height, channels=1, seed=0):
-    """Levels that have nothing to do with each other."""
+    """Unrelated random levels."""
     count = max(width, height).bit_length()
     sizes = [(max(1, height >> k), max(1, width >> k)) for k in range(count)]
     return [random_image(seed + k, *size, channels) for k, size in enumerate(sizes)]

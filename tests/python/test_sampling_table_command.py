@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The command `sampling-table` without Blender: files of tables as the package makes them."""
+"""The command `sampling-table` without Blender: its files, against the package's tables."""
 
 import os
 

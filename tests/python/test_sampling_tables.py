@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Sampling tables: those that ship, what they are good for, and their files."""
+"""Sampling tables: the standard ones, their quality, and their files."""
 
 from functools import cache
 
@@ -70,7 +70,7 @@ def test_magnified_boxes_and_tents_are_bilinear(filter):
 
 
 def centers_off(table, levels):
-    """How far the weighted center of a sample's texels is from it, in cells, at places within."""
+    """Distances in cells from samples to the weighted centers of their texels, within a cell."""
     grid, _, slices = table.subdomains
     section = table.section(levels)
     width = 1.0 / 2.0 ** section.offsets[..., :1]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A reconstruction from file to file that fails leaves the target as it was, and nothing beside."""
+"""A failed reconstruction to a file leaves the target unchanged, and no other files."""
 
 import os
 import signal
@@ -42,7 +42,7 @@ def only_target_is_left(folder, before=BEFORE):
 
 @contextmanager
 def full_disk(size):
-    """While this lasts no file grows beyond so many bytes."""
+    """Limits the size of files within its block, in bytes."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
     try:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Points that stand for nothing, and normals that are missing or contradict each other."""
+"""Points without a measurement, and normals that are missing or contradict each other."""
 
 from pathlib import Path
 
@@ -50,7 +50,7 @@ def test_points_at_one_place_are_left_out(place, count, has_normals) -> None:
 @pytest.mark.parametrize("memory_limit", [None, 0])
 @pytest.mark.parametrize("threads", [1, 3])
 def test_points_at_one_place_in_a_file(tmp_path, memory_limit, threads) -> None:
-    """More points than are in a batch, so that each holds only some of those at one place."""
+    """More points than in a batch, so that each batch has only some of the points at a position."""
     cloud = sphere(400_000, center=(3.0, 0.0, 0.0))
     random = np.random.default_rng(3)
     points = np.concatenate([cloud.points, np.zeros((600, 3))])
@@ -67,7 +67,7 @@ def test_points_at_one_place_in_a_file(tmp_path, memory_limit, threads) -> None:
 
 
 def uv_sphere(rings: int, segments: int) -> np.ndarray:
-    """Corners of the triangles of a sphere: 4 to 6 copies of each, and many of the poles."""
+    """Triangle corners of a sphere: 4 to 6 copies of each vertex, and many of the poles."""
     v, u = np.meshgrid(np.linspace(0, np.pi, rings + 1), np.arange(segments + 1), indexing="ij")
     u = u % segments * (2 * np.pi / segments)
     grid = np.stack([np.sin(v) * np.cos(u), np.sin(v) * np.sin(u), np.cos(v)], axis=2)
@@ -124,7 +124,7 @@ def test_normals_that_are_missing_are_estimated(tmp_path, zero, share, is_file) 
 
 
 def test_a_part_without_normals_follows_the_rest() -> None:
-    """Given normals point inward, as in a room; so do those that follow from them."""
+    """Given normals point inward, as in a room, and so do the normals inferred from them."""
     cloud = sphere(20_000)
     normals = -cloud.normals
     normals[cloud.points[:, 0] > 0.3] = 0.0
@@ -203,7 +203,7 @@ def facing_origin(points: np.ndarray, **options) -> tuple[float, prefilter.Recon
 
 
 def rays(count: int, width: float = 1.2, height: float = 0.9) -> np.ndarray:
-    """Points seen by a camera that looks along z."""
+    """Random rays of a camera that looks along z."""
     random = np.random.default_rng(9)
     x, y = random.uniform(-0.5, 0.5, (2, count))
     return np.column_stack([width * x, height * y, np.ones(count)])
@@ -218,7 +218,7 @@ def facade() -> np.ndarray:
 
 
 def half_sphere() -> np.ndarray:
-    """Visible points of a sphere of radius 1 at distance 3."""
+    """The visible points of a sphere of radius 1 whose center is 3 away."""
     seen = rays(60_000)
     square = (seen**2).sum(axis=1)
     root = 9.0 - 8.0 * square
@@ -227,7 +227,7 @@ def half_sphere() -> np.ndarray:
 
 
 def room() -> np.ndarray:
-    """The walls around a scanner that sees as much in each direction."""
+    """Points on the walls around a scanner, equally dense over directions."""
     seen = np.random.default_rng(10).normal(size=(20_000, 3))
     far = np.abs(np.array([3.0, 2.5, 1.4]) / seen).min(axis=1)
     return seen * far[:, None]
@@ -250,7 +250,7 @@ def test_points_seen_from_the_origin_face_it(points, scale, axis) -> None:
 
 
 def box_surface(sides: tuple[float, float, float], count: int = 20_000) -> np.ndarray:
-    """Spread evenly over the surface of a box around the origin."""
+    """Random points, uniform over the surface of a box around the origin."""
     random = np.random.default_rng(11)
     half = np.array(sides) / 2
     areas = np.prod(half) / half

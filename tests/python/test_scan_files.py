@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files of points are read as others write them, and damage is told."""
+"""Point files by other programs are read, and damage is reported."""
 
 import os
 import re

@@ -111,10 +111,10 @@ def test_names_of_columns(tmp_path, header):
 
 
 def test_mismatched_column_names(tmp_path):
-    # Columns without a name, or with a repeated one, are numbered.
+    # Columns without a name, or with a name already taken, are numbered.
     points = read(tmp_path, "x,y,z,,x,a\n" + lines(POINTS, POINTS, separator=","), "a.csv")
     assert list(points.attributes) == ["value4", "value5", "a"]
-    # More names than numbers: names are ignored.
+    # More names than numbers: names are ignored, and the values decide.
     points = read(tmp_path, "x,y,z,nx,ny,nz,more\n" + lines(POINTS, COLORS), "a.csv")
     np.testing.assert_array_equal(points.colors, COLORS)
     assert len(read(tmp_path, "x y z\n").positions) == 0
@@ -125,7 +125,7 @@ def test_decimal_commas(tmp_path, separator):
     rows = POINTS + 0.25
     text = "x;y;z\n3\n" + lines(rows, [1, 2, 3], separator=separator).replace(".", ",")
     np.testing.assert_array_equal(read(tmp_path, text, "a.csv").positions, rows)
-    # Not where they separate, or some have a point.
+    # No decimal commas where commas separate columns, or where some numbers have a point.
     for text in ("1,2,3\n4,5,6\n", "1, 2, 3\n4, 5, 6\n", "1 , 2 , 3\n4,5,6\n"):
         np.testing.assert_array_equal(read(tmp_path, text).positions, [[1, 2, 3], [4, 5, 6]])
     with pytest.raises(ValueError, match="line 2: found 6 numbers; 3 are needed"):
@@ -228,7 +228,7 @@ def test_normals_of_ptx_files_face_their_scanners(tmp_path):
     corners = positions[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     middles = corners.mean(axis=1)
-    # The room is in a solid, which ends behind its walls.
+    # The mesh is a solid around the room, which ends behind its walls.
     walls = np.linalg.norm(middles, axis=1) < 2.001
     assert np.count_nonzero(walls) > 2000
     assert (np.einsum("tk,tk->t", normals, middles)[walls] < 0).all()

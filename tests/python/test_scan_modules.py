@@ -137,7 +137,7 @@ def test_damaged_las_files(laspy, tmp_path):
             prefilter.read_points(path)
 
 
-# lazrs may abort the process over a damaged file, so another process reads it.
+# On damaged files lazrs may end the process, so another process reads them.
 _READ_DAMAGED = """
 import resource, sys
 import prefilter

@@ -22,7 +22,7 @@ from scan_writers import (
 @pytest.mark.parametrize("scale", [1, 257])
 @pytest.mark.parametrize("form", ["ply", "text", "pcd"])
 def test_colors_of_16_bits_become_bytes(tmp_path, scale, form):
-    """Some programs fill only the lower 8 of them: the first million of points tells."""
+    """Some programs use only the lower 8 of 16 bits; the first million points decide."""
     count = 100_000  # More than are read at once; only the last have a color.
     colors = np.zeros((count, 3), int)
     colors[-3:] = COLORS
@@ -197,7 +197,7 @@ def test_packed_ply_files(tmp_path):
     assert told[-1] == 1.0
     with pytest.raises(prefilter.Cancelled):
         prefilter.read_points(path, progress=lambda done: False)
-    # Several members, one after the other, as cat and pigz write them.
+    # Several gzip members in sequence, as cat and pigz write them.
     halves = gzip.compress(plain[:1000]) + gzip.compress(plain[1000:])
     np.testing.assert_array_equal(
         prefilter.read_points(write(tmp_path, "b.ply.gz", halves)).positions, rows

@@ -92,7 +92,7 @@ def test_split_vertices_at_one_place_are_one():
 
 
 def seam_matrix(left, right, shape, count=20_000):
-    """That whose quadratic form is the mean square of the difference, for one channel."""
+    """The matrix whose quadratic form is the mean square of the difference, for one channel."""
     ours, theirs = sides(left, right, count)
     taps, shares = bilinear_taps(ours, *shape, CLAMP)
     other_taps, other_shares = bilinear_taps(theirs, *shape, CLAMP)
@@ -112,7 +112,7 @@ def without_contrast(image, *lines):
 
 
 def rises(levels, alone, image, surface, **options):
-    """By how much, as a share, levels 1 and up are worse than those that leave seams alone."""
+    """Relative increases in error of levels 1 and up over levels that ignore seams."""
     at = np.arange(1, len(levels))
     more, least = (
         prefilter.mipmap_error(made, image, surface, at, **options) for made in (levels, alone)
@@ -121,7 +121,7 @@ def rises(levels, alone, image, surface, **options):
 
 
 def least_contrast(oracle, seam, image_square, budget):
-    """Of all texels whose error is within the budget, by dense algebra and bisection."""
+    """The least contrast of texels with an error within budget, by dense algebra and bisection."""
     used = oracle.used
     area, right = oracle.matrix[np.ix_(used, used)], oracle.right[used]
     pulled, goal = oracle.pulled[np.ix_(used, used)], oracle.pulled_right[used]
@@ -189,7 +189,7 @@ def test_budgets_hold_on_any_surface(filter, reader, seed):
 
 
 def crumpled(random):
-    """A grid of squares in space, every one at another place of the texture."""
+    """A grid of squares in space, each elsewhere in the texture."""
     side = 4
     positions = np.array([(x, y, 0) for x in range(side + 1) for y in range(side + 1)], float)
     triangles, uvs = [], []
@@ -216,7 +216,7 @@ def test_more_budget_hides_more(filter):
         )[1:]
         for budget in (0.0, 1e-300, 1e-6, 0.001, 0.01, 0.1, 1.0, 1e300)
     ]
-    # The largest budgets leave next to nothing, in any order.
+    # The largest budgets leave almost no contrast, and their order does not matter.
     for less, more in pairwise(contrasts):
         assert (more <= 1.02 * less + 0.03 * contrasts[0]).all()
     assert (contrasts[-1] < 0.2 * contrasts[0]).all()
@@ -232,7 +232,7 @@ def test_an_image_of_one_color_stays():
 @pytest.mark.parametrize("footprint", [0.0, 0.7, 1.0, 1.5])
 @pytest.mark.parametrize("filter", ["pam-bilinear", "pam-trilinear"])
 def test_footprints_have_budgets_of_their_own(filter, footprint):
-    """Of the error against the image averaged over the footprint, which is less."""
+    """The budget is a share of the error against the averaged image, which is smaller."""
     mesh, left, right = folded()
     image = without_contrast(random_image(9, 32, 32, 2), *sides(left, right, 20_000))
     contrasts = [
@@ -299,7 +299,7 @@ def test_a_seam_closes(filter, reader):
 
     alone, light, heavy = (contrast(budget) for budget in (0.0, 0.02, 2.0))
     assert (light[1:] < 0.8 * alone[1:]).all()
-    # The rounds of the fit for encoded texels end before a large weight is through.
+    # The iterations of the fit for encoded texels end before a large weight has converged.
     left = 0.3 if reader == "linear" else 0.5
     assert (heavy[1:] < left * alone[1:]).all()
 

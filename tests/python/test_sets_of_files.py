@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Sets of files that are put into place while their program is killed."""
+"""Sets of files whose program is killed while it commits them."""
 
 import json
 import os
@@ -76,7 +76,7 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="the signal is that of o
 
 
 def texts(*folders):
-    """What the files of a set say, and how many there are of others."""
+    """Names and texts of the files of a set, and the number of other files."""
     found = [path for folder in folders for path in folder.iterdir()]
     plain = [path for path in found if not path.name.startswith(".prefilter-")]
     return sorted((path.name, path.read_text()) for path in plain), len(found) - len(plain)
@@ -90,7 +90,7 @@ def make_folders(quick_path, count):
 
 
 def die(number, stage, *folders):
-    """Writes a set, and is killed at a call; tells whether it came to that."""
+    """Writes a set in a process killed at a call; returns whether it reached that call."""
     child = os.fork()
     if not child:
         sys.argv[1:] = [str(number), stage, *map(str, folders)]
@@ -204,7 +204,7 @@ def test_journals_that_say_nothing_are_removed(quick_path, text):
 
 
 def left_by_a_dead_process(folder):
-    """A set of which one file was replaced, and the other was not there before."""
+    """A set of which one file was replaced, and the other is new."""
     entries = []
     for number, name in enumerate("ab"):
         (folder / f"{name}.txt").write_text("new")
@@ -259,7 +259,7 @@ def test_files_are_on_the_disk_before_they_replace_others(quick_path, monkeypatc
     folder = ("on the disk", quick_path.stat().st_ino)
     last = max(i for i, (what, _) in enumerate(events) if what == "replaces")
     assert folder in events[last:]
-    # What the journal says is there before it counts.
+    # The journal is on disk before the files that it names are replaced.
     assert count == 1 or folder in events[: events.index(("replaces", targets[0].stat().st_ino))]
 
 

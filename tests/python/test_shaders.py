@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Shaders of sampling tables: what compilers say to them, and that GLSL samples as the package."""
+"""Shaders of sampling tables: they compile, and GLSL samples like the package."""
 
 import itertools
 import shutil
@@ -31,7 +31,7 @@ def table(request, tmp_path):
 
 
 def random_levels(width, height):
-    """As textures have them: rounded down where sides are no powers of two."""
+    """Levels with the sizes of textures: sides that are no powers of two are rounded down."""
     return prefilter.mipmaps(random_image(0, height, width, 4), filter="lanczos2", bounds=None)
 
 
@@ -171,7 +171,7 @@ def test_tables_under_two_names_in_one_shader(gpu):
 
 @pytest.mark.parametrize(("width", "height"), [(19, 26), (37, 100), (1, 7), (64, 32)])
 def test_texels_that_the_program_reads_itself(gpu, width, height):
-    """All levels below each other in one image: those of any image can be had so."""
+    """Reads levels of any sizes from one image in which they are stacked."""
     levels = prefilter.sampling_levels(random_image(0, height, width, 4), "lanczos2")
     atlas = np.zeros((sum(len(level) for level in levels), width, 4), np.float32)
     top = 0

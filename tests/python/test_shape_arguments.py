@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What shapes and `rasterize` refuse: each message names the argument, and what is allowed."""
+"""Arguments refused by shapes and `rasterize`: messages name the argument and allowed values."""
 
 import numpy as np
 import prefilter
@@ -23,7 +23,7 @@ def begun():
     return shape
 
 
-# A method, its arguments, and what the message holds.
+# A method, its arguments, and the words its message must hold.
 METHODS = [
     *(("move_to", point, ["x, y: ", PAIR]) for point in ((NAN, 0), (0, INF), ("a", 0), (None, 0))),
     ("line_to", (0, NAN), ["x, y: (0, nan)", PAIR]),

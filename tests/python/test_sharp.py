@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Contours with edges and corners: polyhedra whose edges are known, and what they combine to."""
+"""Contours with edges and corners: polyhedra whose edges are known, and combinations of them."""
 
 import numpy as np
 import prefilter
@@ -213,7 +213,7 @@ def test_trees_of_one_value():
 
 
 def test_a_soup_is_as_by_plane():
-    """Where a cell or two has parts of everything no edges are placed, which bounds the work."""
+    """No edges are placed if one or two cells hold parts of everything, which bounds the work."""
     positions = np.random.default_rng(1).random((1500, 3))
     triangles = np.arange(1500).reshape(-1, 3)
     tree = prefilter.voxelize(positions, triangles, depth=5)

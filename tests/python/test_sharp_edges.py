@@ -129,7 +129,7 @@ def test_rims_are_where_surfaces_meet(operation):
 
 
 def test_the_rim_of_two_cubes_is_exact():
-    """Along the axes: there is nothing but planes and their corners."""
+    """Shapes along the axes have only planes and their corners."""
     first = sharp_shapes.shape("cube", turned=False)
     second = first.moved(np.eye(3), [0.777, 0.613, 0.521])
     subject = edges.Subject("", (first, second), "union", first, edges.NO_EDGES)
@@ -140,7 +140,7 @@ def test_the_rim_of_two_cubes_is_exact():
 
 
 def plane_through_block(degrees):
-    """A block, and one that covers what of it is below a plane at an angle to its top.
+    """A block, and one that covers its part below a plane at an angle to its top.
 
     The plane meets the top at x = -0.6.
     """
@@ -162,7 +162,7 @@ def plane_through_block(degrees):
 
 @pytest.mark.parametrize(("degrees", "seed"), [(15, 1), (15, 3), (20, 1), (29, 3)])
 def test_acute_rims_have_no_teeth(degrees, seed):
-    """A block less what is below a plane that leaves its top: a wedge, whose tip is the rim."""
+    """A block without its part below a plane that leaves its top: a wedge, whose tip is the rim."""
     turn = sharp_shapes.rotation(seed)
     block, cover = (s.moved(turn) for s in plane_through_block(degrees))
 
@@ -184,10 +184,10 @@ def test_acute_rims_have_no_teeth(degrees, seed):
 
 
 def block_with_a_lip(wide):
-    """A block that a plane at 45 degrees to its top leaves a wedge of, and what covers the rest.
+    """A block that a plane at 45 degrees to its top cuts to a wedge, and a cover for the rest.
 
-    At y = 4 the block is cut off but for a lip behind the wedge's edge, x = 0: as wide there as is
-    given, it comes to a point 16 / 3 times as far on.
+    At y = 4 the block ends, except for a lip behind the wedge's edge, x = 0. The lip is `wide`
+    there, and tapers to a point at y = 4 + 16 (wide + 1) / 3.
     """
     end = 4 + 16 * (wide + 1) / 3
     outline = [(-3, -12), (12, -12), (12, 4), (wide, 4), (-1, end), (-3, end)]
@@ -247,7 +247,7 @@ def wedge(degrees):
 @pytest.mark.parametrize("how", [SHARP, CLEAN], ids=["sharp", "clean"])
 @pytest.mark.parametrize("degrees", [45.0, 55.0])
 def test_edges_of_wedges_are_no_folds(degrees, how):
-    """They turn by more than 120 degrees and come out as they are."""
+    """Edges that turn by more than 120 degrees are preserved."""
     shape = wedge(degrees)
     lines = measures.sharp_edges(shape.positions, shape.triangles, 120)
     assert len(lines.ends) == 1
@@ -262,7 +262,7 @@ def test_edges_of_wedges_are_no_folds(degrees, how):
 
 
 def share_off(positions, triangles, shape, degrees):
-    """The share of the area whose normal is farther from the shape's where it is nearest."""
+    """The share of the area whose normal differs by more from the nearest point's on the shape."""
     off = measures.degrees_off(
         positions, triangles, shape.positions, shape.triangles, 0.1, samples=20_000
     )
@@ -282,7 +282,7 @@ def ball(rounds, turn=3):
     ids=["cylinder", "ball"],
 )
 def test_blunt_edges_between_wide_facets_are_straight(shape, how):
-    """Of 15 degrees and of 7 to 12: nothing between two facets has a normal of its own."""
+    """Edges of 15 degrees, and of 7 to 12: normals are a facet's, and none lies between two."""
     subject = edges.Subject("", (shape,), "", shape, edges.NO_EDGES)
     positions, triangles, _ = edges.contour(subject, 64, how)
     assert share_off(positions, triangles, shape, 2) < 0.01
@@ -292,7 +292,7 @@ def test_blunt_edges_between_wide_facets_are_straight(shape, how):
 
 @pytest.mark.parametrize("how", [SHARP, CLEAN], ids=["sharp", "clean"])
 def test_rims_that_run_into_edges_have_no_burr(how):
-    """Of a ball of facets that a cube is cut out of: all normals are those of either."""
+    """A cube is cut out of a ball of facets: all normals are from either solid."""
     first = ball(2, 2)
     second = sharp_shapes.cube().moved(0.8 * sharp_shapes.rotation(4), [0.9, 0, 0])
     subject = edges.Subject("", (first, second), "difference", first, edges.NO_EDGES)
@@ -307,7 +307,7 @@ def test_rims_that_run_into_edges_have_no_burr(how):
 
 
 def test_facets_that_are_small_beside_cells_have_no_edges():
-    """Of less than a cell, and of two degrees: a smooth surface."""
+    """Facets smaller than a cell, with edges of two degrees, count as a smooth surface."""
     shape = ball(6)
     subject = edges.Subject("", (shape,), "", shape, edges.NO_EDGES)
     sharp = edges.contour(subject, 64, SHARP)

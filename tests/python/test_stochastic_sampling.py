@@ -58,7 +58,7 @@ def test_bilinear_reads_the_nearest_level(wrap):
 
 
 def test_bilinear_reads_levels_where_they_lie():
-    """Also those whose last texels reach beyond the image: of a slope, samples are places."""
+    """Also if the last texels reach beyond the image: samples of a linear ramp are positions."""
     slope = np.arange(21, dtype=np.float32)[None, :, None] + 0.5
     levels = prefilter.sampling_levels(slope, "box")
     for scale, u in ((1.0, 0.4), (2.0, 0.3), (4.0, 0.3)):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Commands that are asked to stop: they end soon, say so, and leave nothing."""
+"""Commands asked to stop end soon, say so, and leave no files behind."""
 
 import os
 import signal
@@ -28,7 +28,7 @@ def number(request):
 
 @pytest.mark.parametrize("name", ["out.ktx2", "out.png"])
 def test_a_command_that_works(tmp_path, number, name):
-    """As somebody stops it who sees the first line of progress."""
+    """Stops the command as a user would who sees the first line of progress."""
     pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
     values = np.random.default_rng(1).integers(0, 255, (512, 512, 3), np.uint8)
     (tmp_path / "paint.png").write_bytes(png.encoded(values))

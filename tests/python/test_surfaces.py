@@ -177,7 +177,7 @@ class TestUdimTile:
                     assert found == pytest.approx(exact, rel=1e-12, abs=1e-15)
 
     def test_positions_stay_where_the_texture_is(self):
-        """A surface that is its own texture: what is cut must lie where its UVs say."""
+        """A surface that is its own texture: cut triangles must lie at their UVs."""
         uvs = random_surface(12, triangles=30, spread=3.0).uvs
         corners = np.arange(90).reshape(-1, 3)
         positions = np.concatenate([uvs.reshape(-1, 2), np.zeros((90, 1))], 1)
@@ -196,7 +196,7 @@ class TestUdimTile:
         assert total == pytest.approx(float(sum(inside)) / 2, rel=1e-12)
 
     def test_parts_of_a_disk_are_disks(self):
-        """Vertices of cut edges are shared: Euler's characteristic is that of a disk."""
+        """Vertices of cut edges are shared, so the Euler characteristic is a disk's."""
         n = 7
         x, y = np.meshgrid(np.linspace(0, 3, n), np.linspace(0, 3, n))
         angle = 0.3
@@ -222,7 +222,7 @@ class TestUdimTile:
         assert all(moved.udim_tile(n) is None for n in (1001, 1023, 1025, 1014, 1034, 9999))
 
     def test_a_line_in_the_texture(self):
-        """u runs from 0 over 0.5 to 2: below 1 is all but a similar triangle."""
+        """u runs from 0 over 0.5 to 2: the part below 1 is all except a similar triangle."""
         uvs = np.array([[[0, 0.25], [0.5, 0.25], [2, 0.25]]])
         surface = prefilter.Surface(SQUARE, HALVES[:1], uvs)
         beyond = (2 - 1) / 2 * (2 - 1) / 1.5

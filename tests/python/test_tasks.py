@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Commands over many files, and the tasks of a farm: the same files as one by one."""
+"""Commands over many files, and a farm's tasks: the same files as from single runs."""
 
 import json
 import subprocess
@@ -129,7 +129,7 @@ def test_two_files_never_become_one(tmp_path, capsys):
 
 
 def test_four_processes_at_once_make_what_one_makes(pictures, tmp_path):
-    """In the same folder, where each looks for what others have left behind."""
+    """All write to the same folder, where each looks for others' leftovers."""
     whole, parts = folder(tmp_path, "whole"), folder(tmp_path, "parts")
     assert run("resize", *pictures, "-o", whole, *HALF) == 0
     words = ["-m", "prefilter", "resize", *map(str, pictures), "-o", str(parts), *HALF, "--task"]

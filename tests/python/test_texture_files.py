@@ -50,7 +50,7 @@ def chain(height: int, width: int, channels: int, *, floats: bool = False, seed:
 
 
 def written(tmp_path: Path, kind: str, levels: list, **options):
-    """What a file of the levels reads as."""
+    """Writes levels to a file and returns them as read back."""
     write, read = WRITERS[kind]
     path = tmp_path / f"levels.{kind}"
     write(path, levels, **options)
@@ -138,7 +138,7 @@ def test_first_channels_are_taken(tmp_path, kind, format):
         np.testing.assert_array_equal(found, level[..., :count])
 
 
-# What the samples of a block are, in KTX 2: the first bit and the number of them, and a channel.
+# The samples of a block in KTX 2: (first bit, number of bits) and channel.
 SAMPLES = {
     "BC1": [((0, 64), 1)],  # Color with a cut-out.
     "BC3": [((0, 64), 15), ((64, 64), 0)],
@@ -640,7 +640,7 @@ console.log(JSON.stringify(file));
 
 
 def ktx_parse(path: Path) -> dict:
-    """What the npm package ktx-parse says, which node finds beside the tests or in NODE_PATH."""
+    """The file by the npm package ktx-parse, which node finds beside the tests or in NODE_PATH."""
     command = ["node", "--input-type=module", "--eval", KTX_PARSE, str(path)]
     try:
         run = subprocess.run(command, capture_output=True, text=True, timeout=600)

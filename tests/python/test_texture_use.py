@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a surface uses of its texture, against sampling and lookups written here."""
+"""The part of its texture that a surface uses, against sampling and lookups written here."""
 
 import numpy as np
 import prefilter

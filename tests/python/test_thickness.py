@@ -96,7 +96,7 @@ def wedge(degrees: float) -> Solid:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_edges_of_wedges_stay_where_they_are(seed):
-    """Their bodies hold them, and a contour places them."""
+    """Wedges get no thickness at their edges, which contours place all the same."""
     for degrees in (27.0, 36.0, 44.0):
         solid = wedge(degrees).transformed(random_rotation(seed), np.full(3, CELLS / 2))
         assert octrees_are_same(voxelized(solid, 0.0), voxelized(solid))
@@ -139,7 +139,7 @@ def ring_of(sides: int, radius: float, turn: float) -> np.ndarray:
 
 
 def between(rings: list[tuple[np.ndarray, float]]) -> Solid:
-    """Returns what lies between closed rings, each (outline, height), and the first one."""
+    """Returns the solid that a closed sequence of rings, each (outline, height), bounds."""
     sides = len(rings[0][0])
     positions = np.concatenate([np.insert(ring, 2, z, axis=1) for ring, z in rings])
     i = np.arange(sides)
@@ -154,7 +154,7 @@ def between(rings: list[tuple[np.ndarray, float]]) -> Solid:
 @pytest.mark.parametrize("sides", [17, 19, 31])
 @pytest.mark.parametrize("seed", range(3))
 def test_pins_in_holes_of_other_sides_are_not_thin(sides, seed):
-    """Their faces cross each other all around, a hair apart: nothing there is to be thickened."""
+    """Faces that cross each other all around, a hair apart, must not be thickened."""
     hole, rim, pin = ring_of(24, 9.0, 0.0), ring_of(24, 20.0, 0.0), ring_of(sides, 9.0, 0.1 * seed)
     plate_ = between([(rim, -12.0), (rim, 12.0), (hole, 12.0), (hole, -12.0)])
     end = 0.01 * pin
@@ -195,7 +195,7 @@ def test_slits_of_less_than_a_cell_stay_open(seed):
 
 
 def test_it_ends_without_a_step():
-    """A wedge of 6 degrees: its surface leaves that of the mesh where that is thick enough."""
+    """A wedge of 6 degrees: the thickened surface joins the mesh where that is thick enough."""
     positions = np.array(
         [(x, y, z) for x, h in ((0.0, 0.0), (50.0, 5.0)) for y in (0.0, 30.0) for z in (-h, h)]
     )
@@ -263,7 +263,7 @@ def distances(points, a, b, c):
 
 
 def solid_angle(a, b, c) -> float:
-    """Returns that of triangles seen from the origin, as a share of all directions."""
+    """Returns the solid angle of triangles seen from the origin, as a share of all directions."""
     la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
     volume = (a * np.cross(b, c)).sum(axis=1)
     rest = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
@@ -287,7 +287,7 @@ def test_nasty_meshes():
 
 @pytest.mark.parametrize("count", [12, 400, 1500])
 def test_of_a_soup_what_is_near_is_inside(count):
-    """Triangles as large as everything: few in each cell, and very many."""
+    """Triangles as large as the scene: few in each cell, and very many."""
     random = np.random.default_rng(count)
     positions = random.uniform(4, 28, (3 * count, 3))
     triangles = np.arange(3 * count).reshape(-1, 3)
@@ -301,13 +301,13 @@ def test_of_a_soup_what_is_near_is_inside(count):
     inside = np.array([solid_angle(a - x, b - x, c - x) for x in samples[:300]]) > 0.5
     assert (inside | (gaps[:300] > 0.4)).all()
     assert (~inside | (gaps[:300] < 2.2)).all()
-    # A half of a ball more at most than what is near.
+    # The volume within 0.6 of the triangles, as a lower bound.
     assert tree.volume > (gaps < 0.6).mean() * 28**3
 
 
 @pytest.mark.parametrize("seed", [1, 3])
 def test_sheets_beside_edges_are_not_met(seed):
-    """Boxes without lids, one in the other: the surface has edges beside what is thickened."""
+    """Boxes without lids, one in the other: the surface has edges beside the thickened parts."""
     outer, inner = box((-1, -1, -1), (1, 1, 1)), box((-0.8, -0.8, -0.8), (0.8, 0.8, 1.2))
     both = join(*(Solid(one.positions, one.triangles[:-2]) for one in (outer, inner)))
     solid = both.transformed(random_rotation(seed), np.zeros(3))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Thin places against rays through the solid, and against what finer cells keep."""
+"""Thin places, against rays through the solid and against finer cells."""
 
 import numpy as np
 import prefilter
@@ -31,7 +31,7 @@ def thin_places(solid: Solid, depth: int = DEPTH, **options) -> prefilter.ThinPl
 
 
 def depths_below(solid: Solid, triangles) -> np.ndarray:
-    """Returns how far rays go from the middles of triangles inward until they leave the solid."""
+    """Returns the lengths of rays from triangles' middles inward until they leave the solid."""
     corners = solid.positions[solid.triangles]
     a, b, c = np.moveaxis(corners, 1, 0)
     normals = np.cross(b - a, c - a)
@@ -149,8 +149,8 @@ def test_of_a_narrow_wedge_nine_tenths_are_thicker(degrees):
     """Thickness grows in proportion to the way from the edge; two triangles a face cover it."""
     found = voxelized(wedge(degrees)).thin_walls
     way = min(LEAST / 2 / np.tan(np.radians(degrees / 2)), 20.0)
-    # Of the way from the edge: a tenth of the area is nearer, of the triangle with two corners
-    # there, whose width falls from 1 to 0 over 20, and of the one with a single corner there.
+    # Distances from the edge below which a tenth of the area lies: for the triangle with two
+    # corners on the edge, whose width falls from 1 to 0 over 20, and for the one with one corner.
     two = 20 - np.sqrt(400 - 40 * 0.1 * (way - way**2 / 40))
     one = way * np.sqrt(0.1)
     expected = 2 * np.tan(np.radians(degrees / 2)) * np.array([two, two, one, one])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Parts about a cell thick: what smoothing would leave less of than the iso-value."""
+"""Parts about a cell thick, which smoothing would push below the iso-value."""
 
 import numpy as np
 import prefilter
@@ -16,7 +16,7 @@ CELL = 1.0 / 97  # At that depth, with a base as large as this one.
 
 
 def turned(vectors: Floats) -> Floats:
-    """Turns by an angle about an axis that are no grid's."""
+    """Rotates vectors so that no axis or face is aligned with the grid."""
     axis = np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0)
     sine, cosine = np.sin(0.4), np.cos(0.4)
     along = (vectors @ axis)[:, None] * axis

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Parts, genus and borders of meshes against shapes of which they are known, and against a walk."""
+"""Parts, genus and borders of meshes, against known shapes and against a walk over edges."""
 
 import numpy as np
 import prefilter
@@ -22,13 +22,13 @@ def joined(*meshes):
 
 
 def merged(positions, triangles):
-    """Returns a mesh in which vertices at one place are one."""
+    """Returns a mesh with vertices at the same position merged."""
     places, names = np.unique(positions, axis=0, return_inverse=True)
     return places, names.reshape(-1)[triangles]
 
 
 def single_edges(triangles):
-    """Returns the edges that one triangle has, of those with three corners."""
+    """Returns the edges of exactly one triangle, ignoring degenerate triangles."""
     counts = {}
     for corners in triangles.tolist():
         if len(set(corners)) == 3:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What is up to date is left alone: by contents and settings, which files keep."""
+"""Outputs that are up to date by the contents and settings stored in them are left alone."""
 
 import gzip
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not in
 
 @dataclass
 class Pair:
-    """Holds what may be read, in one of the ways."""
+    """Settings with an array and sets, to compute a fingerprint of."""
 
     name: str
     values: Any
@@ -40,7 +40,7 @@ def photo(tmp_path):
 
 
 def is_made(capsys, out, *arguments):
-    """Runs a command; tells whether it has written its file."""
+    """Runs a command; returns whether it has written its file."""
     before = out.stat().st_ino if out.exists() else None
     capsys.readouterr()
     assert run(*arguments, "--skip-up-to-date") == 0

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The margin of a UV map's mask, against the share of each pixel that is as near to a chart."""
+"""The margin of a UV map's mask, against the share of each pixel within it of a chart."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ def mask(polygons, margin, **changes):
 
 
 def distances(polygon):
-    """From each place to the polygon, in pixels; 0 inside of it."""
+    """Distance from each position to the polygon, in pixels; 0 inside of it."""
     at = (np.arange(SIDE * FINE) + 0.5) / FINE
     x, y = np.meshgrid(at, at)
     corners = polygon * SIDE
@@ -45,7 +45,7 @@ def test_charts_reach_as_far_as_the_margin(margin):
     share = near.reshape(SIDE, FINE, SIDE, FINE).mean(axis=(1, 3))
     found = mask([CHART], margin)
     np.testing.assert_allclose(found, share, rtol=0, atol=0.03)
-    # Of a convex chart the whole is known: Steiner's formula.
+    # The total area of a convex chart with its margin, by Steiner's formula.
     square = np.array([[0.3, 0.4], [0.6, 0.4], [0.6, 0.7], [0.3, 0.7]])
     side = 0.3 * SIDE
     whole = side * side + 4 * side * margin + np.pi * margin**2

@@ -33,7 +33,7 @@ def page(request):
     return request.param
 
 
-# Of these colors each level has one, so that a picture tells which level it shows.
+# Each level has one of these colors, so that a picture tells which level it shows.
 COLORS = [(255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 0), (0, 255, 255), (255, 0, 255)]
 
 
@@ -113,9 +113,9 @@ def test_every_level_arrives_and_the_right_one_shows(tmp_path, page, format, sup
         assert shown == round(max(0, np.log2(texels_a_pixel)))
 
 
-# Formats whose legacy header Babylon.js reads, and those that it does not know with either.
+# Formats whose legacy header Babylon.js reads, and formats that it supports with neither header.
 LEGACY = ["bc1", "bc3", "rgba8", "r8", "rgba16f", "rgba32f"]
-# Of these it reads all levels, and then makes its own of level 0.
+# Formats whose levels it reads and then replaces with its own, made from level 0.
 REMADE = ["rgba8", "r8"]
 UNKNOWN = ["bc4", "bc5", "bc7"]
 

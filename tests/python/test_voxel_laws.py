@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What must hold of octrees, whatever the mesh."""
+"""Laws that hold for octrees of all meshes."""
 
 import time
 from itertools import pairwise
@@ -66,7 +66,7 @@ def test_coarser_cells_are_means():
         assert np.abs(octree.dense(depth) - means).max() < 1e-6
         assert np.array_equal(octree.coarsened(depth).dense(), octree.dense(depth))
     assert np.abs(octree.dense(3) - voxelized(A, 3).dense()).max() < 2e-6
-    # Beyond its depth an octree says nothing new.
+    # Beyond its depth an octree has no further detail.
     assert np.array_equal(octree.dense(7), np.kron(octree.dense(), np.ones((2, 2, 2))))
 
 
@@ -104,7 +104,7 @@ def test_boxes_are_integrals_over_the_cells(seed):
 
 
 def test_moving_turning_and_scaling_along_with_the_bounds():
-    """By powers of two and whole cells, where no rounding comes in."""
+    """Scales by powers of two and moves by whole cells, which is exact."""
     octree = voxelized(A)
     moved = A.transformed(4 * np.eye(3), (8, -4, 16))
     bounds = (np.array([8.0, -4, 16]), np.array([12.0, 0, 20]))
@@ -236,7 +236,7 @@ def test_a_plane_in_coarse_cells_is_one_in_fine_cells():
 
 
 def test_operands_of_other_bounds():
-    """Whose cells are those of the first, a few cells on: values are carried over exactly."""
+    """The second grid is the first one moved by whole cells: values carry over exactly."""
     a = voxelized(A)
     low = np.array([4, -8, 12]) / N
     b = voxelized(B, 4, (low, low + 0.5))
@@ -285,7 +285,7 @@ def test_progress_rises_to_one():
 
 
 def test_returning_false_stops_soon():
-    """At any time, in less than 0.2 s of a processor; twice that on a machine that is busy."""
+    """Cancels at any time within 0.2 s of processor time, or twice that on a busy machine."""
     solid = torus(0.3, 0.15, 200, 100).transformed(random_rotation(1), (0.5, 0.5, 0.5))
     for share in (0.0, 0.3, 0.7):
         stopped = []

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The command `voxelize`: surfaces as the package's functions make them."""
+"""The command `voxelize`: its surfaces, against the package's functions."""
 
 import numpy as np
 import prefilter

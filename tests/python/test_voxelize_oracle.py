@@ -51,7 +51,7 @@ def test_cells_are_boxes_where_the_bounds_are():
 
 
 def test_what_leaves_the_bounds_is_cut_off():
-    """On all sides, so that every estimate of the root's mean sees parts outside."""
+    """Parts lie outside on all sides, so every estimate of the root's mean is affected."""
     solid = crumpled(3)
     for low, high in ((0.3, 0.6), (0.5, 1.2), (-0.4, 0.45)):
         check(solid, 3, (np.full(3, low), np.full(3, high)))
@@ -79,7 +79,7 @@ def test_a_box_analytically(depth):
 
 @pytest.mark.parametrize("cut", [0.25, 0.5, 0.3125])
 def test_faces_on_the_borders_of_cells(cut):
-    """No cell is half in: what lies on a border belongs to one side of it."""
+    """A face on a border of cells belongs to one side of it, so no cell is half inside."""
     octree = voxelized(box((cut,) * 3, (0.75,) * 3), 4)
     expected = np.zeros((16, 16, 16))
     first = round(cut * 16)
@@ -88,7 +88,7 @@ def test_faces_on_the_borders_of_cells(cut):
 
 
 def test_a_fine_torus():
-    """Between the torus's own volume and its mesh's there is what its chords cut off."""
+    """The volumes of the torus and of its mesh differ by the volume that chords cut off."""
     solid = torus(0.27, 0.11, 96, 64).transformed(random_rotation(4), (0.5, 0.5, 0.5))
     check(solid, 4)
     octree = voxelized(solid, 6)
@@ -98,7 +98,7 @@ def test_a_fine_torus():
 
 
 def test_a_fine_sphere():
-    """Leaves far from the surface hold what the ball has there, to the last bit."""
+    """Leaves far from the surface hold exactly 0 or 1."""
     solid = sphere(0.41, 6, (0.5, 0.49, 0.52))
     check(solid, 4)
     octree = voxelized(solid, 7)
@@ -151,7 +151,7 @@ def test_a_mesh_far_away_in_large_units():
 
 
 def missing_bound(missing: Solid, depth: int) -> np.ndarray:
-    """How much the removal of triangles can change each of the cells of the unit cube.
+    """Bounds on the change of each cell of the unit cube when triangles are removed.
 
     A cell's octant has the cell's mean and a sum of seven coefficients. A piece of surface of
     vector area (ax, ay, az), in units of the cell's side s, changes it by
@@ -200,12 +200,12 @@ def test_a_hole_harms_what_is_around_it(seed, record_property):
         line = f"error {error[there].max():.4f}, bound {bound[there].max():.4f}"
         record_property(f"{near} to {far} cells from a hole", line)
         print(f"{near} to {far} cells from a hole: {line}")
-    # So inside and outside are told apart everywhere but at the holes themselves.
+    # So inside and outside are distinguished everywhere except at the holes themselves.
     assert error[distance > 4].max() < 0.25
 
 
 def test_a_hole_leaves_cells_alone_that_share_no_parent_with_it():
-    """All of what is missing is in one octant: only the root's coefficients reach the others."""
+    """The missing triangles are in one octant: only the root's coefficients reach the others."""
     depth, solid = 5, sphere(0.4, 4, (0.5, 0.5, 0.5))
     middles = solid.corners.mean(axis=1)
     removed = np.flatnonzero((middles > 0.6).all(axis=1))[:10]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Shapes by method="wavelet": what it has to have in common with "scanline", and what not."""
+"""Shapes by method="wavelet": required agreement with "scanline", and allowed differences."""
 
 import itertools
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What tells folds of results from edges of what is voxelized, and contours at ends of slits."""
+"""Telling folds of results from edges of the voxelized mesh, and contours at ends of slits."""
 
 import sys
 from pathlib import Path
@@ -18,7 +18,7 @@ pytest.importorskip("scipy")
 
 
 def folds_left(positions, triangles, solid):
-    """How many folds are not at a wedge of a solid in cells of 1."""
+    """Counts folds away from and at wedges of a solid, in cells of size 1."""
     triangles = np.asarray(triangles, np.int64)
     folded = measures.folded_pairs(positions, triangles)
     is_wedge = wedges.are_wedges(positions, triangles, folded, solid, 1.0)
@@ -38,7 +38,7 @@ def prism(corners, height=8.0):
 
 
 def turned_prism(corners):
-    """The same, inside out."""
+    """A prism, inside out."""
     made = prism(corners)
     return Solid(made.positions, made.triangles[:, ::-1].copy())
 
@@ -54,7 +54,7 @@ def test_an_edge_of_the_solid_is_a_wedge():
 
 
 def test_a_convex_wedge_of_crossed_faces_is_one_where_only_what_is_behind_both_is_inside():
-    """The sides of the tip go on beyond it, to faces that wind backward around what is there."""
+    """The sides of the tip continue beyond it, where the faces enclose a volume inside out."""
     sides = np.array([[-1, 0.25], [6, -1.5], [6, 1.5], [-1, -0.25]], float)
     crossed = prism(sides)
     made = prism(TIP)
@@ -85,7 +85,7 @@ def tilted_box(low, high, angles):
 
 
 def folds_of_contour(solid, *, is_clean):
-    """Those of the sharp contour at the usual thickness, in 32 cells of 1."""
+    """Folds of the sharp contour at the usual thickness, in 32 cells of size 1."""
     bounds = ((0, 0, 0), (32, 32, 32))
     source = solid.positions, solid.triangles
     tree = prefilter.voxelize(*source, depth=5, bounds=bounds, thickness=1.5)

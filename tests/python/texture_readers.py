@@ -49,7 +49,7 @@ FORMATS = {
     "ASTC_8x8_SRGB": (None, 172, 4, None, 16, True),
     "ASTC_4x4_SFLOAT": (None, 1000066000, 4, None, 16, False),
     "ASTC_6x6_SFLOAT": (None, 1000066004, 4, None, 16, False),
-    # Vulkan has no word for UASTC; its descriptor tells it.
+    # Vulkan has no name for UASTC; the file's descriptor identifies it.
     "UASTC_UNORM": (None, 0, 4, None, 16, False),
     "UASTC_SRGB": (None, 0, 4, None, 16, True),
 }
@@ -57,7 +57,7 @@ FORMATS = {
 
 @dataclass
 class File:
-    """What a texture file says."""
+    """The contents of a texture file."""
 
     format: str
     width: int
@@ -73,7 +73,7 @@ class File:
         return FORMATS[self.format][5]
 
     def level(self, number: int) -> np.ndarray:
-        """A level, the top row first; that of a block format in floats, as it is decoded."""
+        """A level, the top row first; block formats are decoded to floats."""
         _, _, channels, dtype, _, _ = FORMATS[self.format]
         height, width = max(1, self.height >> number), max(1, self.width >> number)
         if dtype is None:
@@ -88,7 +88,7 @@ class File:
 
 
 def level_bytes(name: str, width: int, height: int, number: int) -> int:
-    """How many bytes a level takes."""
+    """The size of a level in bytes."""
     width, height = max(1, width >> number), max(1, height >> number)
     _, _, _, dtype, unit, _ = FORMATS[name]
     if dtype is None:
@@ -102,8 +102,8 @@ def block_side(name: str) -> int:
     return int(name[5]) if name.startswith("ASTC") else 4
 
 
-# The codes of Direct3D 9, and the pixel format that says the same with masks:
-# (flags without that of alpha, bits a texel, masks of red, green, blue and alpha).
+# The codes of Direct3D 9, and the equivalent pixel format with masks:
+# (flags except the alpha flag, bits a texel, masks of red, green, blue and alpha).
 FOUR_CCS = {
     b"DXT1": "BC1_UNORM",
     b"DXT5": "BC3_UNORM",
@@ -234,7 +234,7 @@ def read_ktx2(path: Path) -> File:
 
 
 def _inflated(frame: bytes, count: int) -> bytes:
-    """What one frame of zstd holds, which tells that it is `count` bytes."""
+    """The contents of one zstd frame, whose header gives its size as `count` bytes."""
     import zstandard
 
     assert zstandard.frame_content_size(frame) == count
