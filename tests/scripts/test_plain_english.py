@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("addon", "bench", "docs", "examples", "native", "scripts", "tests")
 """Their subfolders, and the pages beside them, are judged one by one."""
 MAX_CLAUSES = 1.0
-"""Of "what is", "what a" and the like, per 1000 words of a folder."""
+"""The most clauses that begin with "what" and a verb or an article, per 1000 words of a folder."""
 MIN_WORDS = 800
 """Fewer words say nothing about a rate; folders with fewer are judged with the one above."""
 
@@ -64,7 +64,7 @@ READERS = {
 
 
 def texts_of_folders() -> dict[str, list[tuple[Path, str]]]:
-    """Returns what is written in each folder with enough words, with the files."""
+    """Returns the texts of each folder that has enough words, with their files."""
     files = [path for folder in FOLDERS for path in (ROOT / folder).rglob("*")]
     texts: dict[str, list[tuple[Path, str]]] = {}
     for path in [*sorted(files), *ROOT.glob("*.md")]:
@@ -108,11 +108,11 @@ def test_sentences_have_a_subject(folder: str) -> None:
     [
         (
             cpp_comments,
-            "// What is\n// left.\nint a;  // in cells\n",
-            ["What is left.", "in cells"],
+            "// Cells\n// left.\nint a;  // in cells\n",
+            ["Cells left.", "in cells"],
         ),
         (python_comments, '"""Returns it."""\n# Why.\nx = "# no"\n', ["Returns it.", "Why."]),
-        (page_paragraphs, "One `what is`\nline.\n\n```\nwhat is\n```\n", ["One line.", ""]),
+        (page_paragraphs, "One `bit of`\nline.\n\n```\ncode\n```\n", ["One line.", ""]),
     ],
 )
 def test_readers_find_texts(reader, source: str, expected: list[str]) -> None:

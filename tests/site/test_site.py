@@ -2,7 +2,7 @@
 
 """The pages of docs/ as a site, which scripts/site built: whole, and at home in a browser.
 
-PREFILTER_SITE is where it is. What a browser makes of it is tested where there is Chromium.
+PREFILTER_SITE is where it is. Pages are opened in Chromium where it is installed.
 """
 
 import contextlib
@@ -32,7 +32,7 @@ needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromi
 
 
 class Reader(HTMLParser):
-    """What a page has and asks for."""
+    """Anchors and links of a page."""
 
     def __init__(self, text):
         super().__init__()
@@ -59,7 +59,7 @@ def read(page):
 
 
 def dead(page, target):
-    """Tells whether what a page leads to, or needs, is not there."""
+    """Returns whether the target of a link, or a file that a page needs, is missing."""
     name, _, place = unquote(target).partition("#")
     other = urljoin(page, name) if name else page
     path = SITE / other.lstrip("/")
@@ -142,7 +142,7 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
 
 
 def opened(url, folder, width=1280):
-    """What a page has become in a browser, and what its console says."""
+    """A page after a browser has loaded it, with the messages of its console."""
     words = [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"]
     words += [
         f"--user-data-dir={folder}",

@@ -19,7 +19,7 @@ std::span<const std::uint8_t> take(std::size_t count, std::span<const std::uint8
   return taken;
 }
 
-// A little-endian number of so many bytes; what is missing is 0.
+// A little-endian number of so many bytes; missing bytes are 0.
 std::uint32_t take_number(std::size_t bytes, std::span<const std::uint8_t>* rest) {
   std::uint32_t number = 0;
   int shift = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // What reads bytes of others, as functions of any bytes: they return, whatever the bytes are, or
-// throw what is no Error, run into a sanitizer, or never end.
+// throw anything but an Error, run into a sanitizer, or never end.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ void read_blocks(std::span<const std::uint8_t> bytes);
 /// Sixteen bits for each: endpoints, selectors, bytes of endpoints, of selectors, of tables and of
 /// colors; width and height, a byte each; then these bytes, and the rest for alpha.
 void read_etc1s(std::span<const std::uint8_t> bytes);
-/// Frames of zstd behind the count of what they hold, of 32 bits.
+/// Frames of zstd behind the number of their bytes when unpacked, in 32 bits.
 void read_zstd(std::span<const std::uint8_t> bytes);
 
 /// SVG's path data.

@@ -112,7 +112,7 @@ Image tiles(int size) {
   Random random(29);
   for (int tile = 0; tile < (size / kSide) * (size / kSide); ++tile) {
     const int kind = tile % Pattern::kCount;
-    // Of one kind, and of one color of gray every fifth time.
+    // Every fifth tile is gray.
     const bool is_gray = tile % 5 == 0;
     std::vector<Pattern> channels(3, Pattern(kind, &random));
     if (!is_gray) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What the hashes are of: made of arithmetic alone, so that every system begins with the same.
+// Inputs of the hashed functions, made by arithmetic alone, so that they are the same everywhere.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Prints a line for each of many results: its name, and a hash of its bits. Those of all builds, on
-// all systems and with any number of threads, are to be the same.
+// Prints a line for each of many results: its name, and a hash of its bits. The hashes
+// must be equal for all builds, on all systems and with any number of threads.
 // usage: prefilter_hashes [THREADS [PART]]: 0 = all processors; only names that begin with PART
 
 #include <array>

@@ -4,8 +4,8 @@
 //
 // The measure is the surface's area mapped to the texture; the cell is [0, 1]^2 in its own
 // coordinates. Moments up to degree 2 along each axis suffice for products of two bilinear
-// functions (section 7.3). Those of a cell are a fixed linear combination of those of its four
-// quarters.
+// functions (section 7.3). A cell's moments are a fixed linear combination of those of its
+// four quarters.
 #pragma once
 
 #include <array>

@@ -64,8 +64,8 @@ def read_points(
     Args:
         path: Path of the file.
         most: Greatest number of points to keep: every second, third or so on is kept while reading,
-            so that the file need not fit into memory. None keeps all. Of chosen points, whose
-            number is not known before, every 2nd, 4th, 8th or so on is kept.
+            so that the file need not fit into memory. None keeps all. If points are chosen, so
+            that their number is not known before, every 2nd, 4th, 8th or so on is kept.
         classes: Classes of the points to keep, as for `choose_points`.
         returns: Returns to keep, as for `choose_points`.
         box: Box of the points to keep, as for `choose_points`.

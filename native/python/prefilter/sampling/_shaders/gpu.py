@@ -28,7 +28,7 @@ alpha must be premultiplied. No sampler state matters.
   vec4 ${name}_sample($texture levels, vec2 uv, float mip_value, ivec2 wrap)
     The filtered color at uv, where (0, 0) and (1, 1) are corners of the image. mip_value is log2
     of the width of the filter's unit (a pixel, usually) in texels of level 0; at 0 and below,
-    the texture is magnified. wrap says for u and v what lies outside of the image:
+    the texture is magnified. wrap gives the texels outside the image, for u and v:
     ${upper}_CLAMP (its nearest texel, the default), ${upper}_REPEAT, or
     ${upper}_BORDER (zero).
 

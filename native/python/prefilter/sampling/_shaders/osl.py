@@ -30,8 +30,8 @@ read as the renderer decodes them.
   Vector     u and v; (0, 0) is the lower left corner of the picture, (1, 1) the upper right
   Scale      the width of the filter's unit (a pixel, usually) in texels of level 0; 0: from how
              u and v change from pixel to pixel, by the longer axis of the pixel's footprint
-  WrapU      what lies beside the picture: 0 its nearest texel, 1 the picture again, 2 zero
-  WrapV      what lies below and above it
+  WrapU      texels beside the picture: 0 its nearest texel, 1 the picture again, 2 zero
+  WrapV      the same for texels below and above it
 """
 
 _SHADER = """
