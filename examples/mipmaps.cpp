@@ -83,9 +83,8 @@ int main() {
       mip_values.push_back(static_cast<double>(views.size()));
       views.push_back(level.view());
     }
-    const std::vector<double> errors =
-        prefilter::mipmap_error(views, image.view(), {&surface}, mip_values, options.wrap,
-                                options.reader, prefilter::Progress(), options.threads);
+    const std::vector<double> errors = prefilter::mipmap_error(
+        views, image.view(), {&surface}, mip_values, options.wrap, options.reader, options.run);
     for (std::size_t k = 1; k < levels.size(); ++k) {
       std::printf("%-12s level %zu, %3d x %2d texels: error %.5f\n", name, k, levels[k].width,
                   levels[k].height, errors[k]);

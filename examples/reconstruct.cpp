@@ -24,13 +24,13 @@ int main(int argc, char** argv) {
 
     prefilter::ReconstructOptions options;
     options.depth = 6;  // 64 cells along the longest axis
-    options.progress = prefilter::Progress([](double done) {
+    options.run = prefilter::Run([](double done) {
       std::fprintf(stderr, "\r%3.0f %%", 100.0 * done);
       return true;  // go on
     });
     const prefilter::ReconstructReport report =
         prefilter::reconstruct(points.get(), options, &file);
-    file.finish(prefilter::Progress());
+    file.finish(prefilter::Run());
     std::printf("points: %zu\nvertices: %zu\ntriangles: %zu\n", report.points, report.vertices,
                 report.triangles);
   } catch (const prefilter::Error& error) {

@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
     const prefilter::Octree a = prefilter::voxelize({first.positions, first.triangles}, options);
     const prefilter::Octree b = prefilter::voxelize({second.positions, second.triangles}, options);
     const prefilter::Octree both =
-        prefilter::combine(a, b, prefilter::SetOperation::kUnion, options.progress, 0);
+        prefilter::combine(a, b, prefilter::SetOperation::kUnion, options.run.with_threads(0));
     std::printf("volume: %.6f\n", prefilter::volume(both));
 
     prefilter::ContourOptions contour;
@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
     std::vector<std::array<std::int64_t, 3>> triangles;
     for (const auto& [a, b, c] : mesh.triangles) triangles.push_back({a, b, c});
     file.add_triangles(triangles);
-    file.finish(prefilter::Progress());
+    file.finish(prefilter::Run());
     std::printf("triangles: %zu\n", mesh.triangles.size());
   } catch (const prefilter::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());

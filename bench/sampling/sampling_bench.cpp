@@ -43,7 +43,7 @@ Sampler ours(const std::string& name, const Pyramid& pyramid, const SamplingTabl
   return {name, [pyramid, table](const Samples& samples, float* result) {
             SampleOptions options;
             options.wrap = {Wrap::kRepeat, Wrap::kRepeat};
-            options.threads = 1;
+            options.run = Run(1);
             sample(pyramid, table, samples.coordinates, samples.scales, options,
                    {result, samples.size() * kChannels});
           }};

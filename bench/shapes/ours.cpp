@@ -50,7 +50,7 @@ class FilteredDrawing final : public Drawing {
     options_.filter = filter;
     options_.method = method;
     options_.overlap = Overlap::kAdd;
-    options_.threads = 1;
+    options_.run = Run(1);
     shapes_[0].winds_once = true;
     build();
   }

@@ -127,7 +127,7 @@ void bake(const char* picture_path, const char* mesh_path, const char* target,
   MipmapOptions options;
   options.filter = prefilter::mipmap_filter(filter);
   options.wrap = {prefilter::Wrap::kRepeat, prefilter::Wrap::kRepeat};
-  options.threads = threads;
+  options.run = prefilter::Run(threads);
   std::vector<Image> levels = prefilter::coarser_levels(
       TexelSource(picture.data.data(), picture.width, picture.height, 4, &values), {&surface},
       options);

@@ -22,13 +22,13 @@ namespace prefilter::python {
 
 namespace {
 template <class Channel>
-py::bytes compressed(const py::array& rgba, const BlockOptions& options, const Progress& progress) {
+py::bytes compressed(const py::array& rgba, const BlockOptions& options, const Run& run) {
   const auto texels = py::cast<Array<Channel>>(rgba);
   std::vector<std::uint8_t> blocks;
   {
     const py::gil_scoped_release unlocked;
     blocks = compress_blocks(texels.data(), static_cast<int>(texels.shape(1)),
-                             static_cast<int>(texels.shape(0)), options, progress);
+                             static_cast<int>(texels.shape(0)), options, run);
   }
   return {reinterpret_cast<const char*>(blocks.data()), blocks.size()};
 }
@@ -40,12 +40,12 @@ std::span<const std::uint8_t> span_of(const py::bytes& bytes) {
 
 template <class Channel, class Decode>
 py::array decoded(const Decode& decode, const py::bytes& blocks, int width, int height,
-                  const DecodeOptions& options, const Progress& progress) {
+                  const DecodeOptions& options, const Run& run) {
   std::vector<Channel> texels;
   {
     const auto view = span_of(blocks);
     const py::gil_scoped_release unlocked;
-    texels = decode(view, width, height, options, progress);
+    texels = decode(view, width, height, options, run);
   }
   return to_array<Channel>(std::move(texels), {height, width, 4});
 }
@@ -64,11 +64,11 @@ py::list decoded_etc1s(const Codebooks& codebook_arrays, const std::vector<Level
   for (const auto& [width, height, color, alpha] : levels) {
     parts.push_back({width, height, span_of(color), span_of(alpha)});
   }
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback);
   std::vector<std::vector<std::uint8_t>> images;
   {
     const py::gil_scoped_release unlocked;
-    images = decode_etc1s(codebooks, parts, progress);
+    images = decode_etc1s(codebooks, parts, run);
   }
   py::list arrays;
   for (std::size_t i = 0; i < images.size(); ++i) {
@@ -91,12 +91,12 @@ py::tuple compressed_etc1s(const std::vector<Array<std::uint8_t>>& levels, int q
     images.push_back(
         {level.data(), static_cast<int>(level.shape(1)), static_cast<int>(level.shape(0))});
   }
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, threads);
   Etc1sTexture texture;
   {
     const py::gil_scoped_release unlocked;
-    texture = compress_etc1s(
-        images, {quality, has_alpha, is_color, block_effort_named(effort), threads}, progress);
+    texture =
+        compress_etc1s(images, {quality, has_alpha, is_color, block_effort_named(effort)}, run);
   }
   py::list parts;
   for (const Etc1sTexture::Level& level : texture.levels) {
@@ -123,11 +123,10 @@ void bind_blocks(py::module_& m) {
       [](const py::array& rgba, const std::string& format, bool srgb, bool weigh_by_alpha,
          const std::string& effort, const py::object& callback, int threads) {
         const BlockLayout& layout = layout_named(format);
-        const BlockOptions options{layout.format, weigh_by_alpha, srgb, block_effort_named(effort),
-                                   threads};
-        const Progress progress = to_progress(callback);
-        return layout.is_float ? compressed<HalfBits>(rgba, options, progress)
-                               : compressed<std::uint8_t>(rgba, options, progress);
+        const BlockOptions options{layout.format, weigh_by_alpha, srgb, block_effort_named(effort)};
+        const Run run = to_run(callback, threads);
+        return layout.is_float ? compressed<HalfBits>(rgba, options, run)
+                               : compressed<std::uint8_t>(rgba, options, run);
       },
       py::arg("rgba"), py::arg("format"), py::arg("srgb"), py::arg("weigh_by_alpha"),
       py::arg("effort"), py::arg("progress"), py::arg("threads"));
@@ -135,12 +134,12 @@ void bind_blocks(py::module_& m) {
       "supercompress",
       [](const py::bytes& data, const py::object& callback) {
         const auto view = static_cast<std::string_view>(data);
-        const Progress progress = to_progress(callback);
+        const Run run = to_run(callback);
         std::vector<std::uint8_t> frame;
         {
           const py::gil_scoped_release unlocked;
-          frame = supercompress(reinterpret_cast<const std::uint8_t*>(view.data()), view.size(),
-                                progress);
+          frame =
+              supercompress(reinterpret_cast<const std::uint8_t*>(view.data()), view.size(), run);
         }
         return py::bytes(reinterpret_cast<const char*>(frame.data()), frame.size());
       },
@@ -162,11 +161,11 @@ void bind_blocks(py::module_& m) {
       [](const py::bytes& blocks, const std::string& format, bool srgb, int width, int height,
          const py::object& callback, int threads) {
         const BlockLayout& layout = layout_named(format);
-        const DecodeOptions options{layout.format, srgb, threads};
-        const Progress progress = to_progress(callback);
+        const DecodeOptions options{layout.format, srgb};
+        const Run run = to_run(callback, threads);
         return layout.is_float
-                   ? decoded<HalfBits>(decode_half_blocks, blocks, width, height, options, progress)
-                   : decoded<std::uint8_t>(decode_blocks, blocks, width, height, options, progress);
+                   ? decoded<HalfBits>(decode_half_blocks, blocks, width, height, options, run)
+                   : decoded<std::uint8_t>(decode_blocks, blocks, width, height, options, run);
       },
       py::arg("blocks"), py::arg("format"), py::arg("srgb"), py::arg("width"), py::arg("height"),
       py::arg("progress"), py::arg("threads"));

@@ -24,12 +24,12 @@ namespace {
 Array<std::int64_t> bound_subsample(const Array<double>& points, double spacing,
                                     const std::string& method, const py::object& callback,
                                     int threads) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback);
   const Subsampling chosen = value_named("method", method, kSubsamplingNames);
   std::vector<std::int64_t> kept;
   {
     const py::gil_scoped_release unlocked;
-    kept = subsample(rows_of(points), spacing, chosen, progress, threads);
+    kept = subsample(rows_of(points), spacing, chosen, run);
   }
   const auto count = static_cast<py::ssize_t>(kept.size());
   return to_array<std::int64_t>(std::move(kept), {count});
@@ -37,11 +37,11 @@ Array<std::int64_t> bound_subsample(const Array<double>& points, double spacing,
 
 Array<bool> bound_find_outliers(const Array<double>& points, int neighbours, double factor,
                                 const py::object& callback, int threads) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, threads);
   std::vector<bool> is_outlier;
   {
     const py::gil_scoped_release unlocked;
-    is_outlier = find_outliers(rows_of(points), neighbours, factor, progress, threads);
+    is_outlier = find_outliers(rows_of(points), neighbours, factor, run);
   }
   Array<bool> result(static_cast<py::ssize_t>(is_outlier.size()));
   for (std::size_t i = 0; i < is_outlier.size(); ++i) {
@@ -81,7 +81,7 @@ py::tuple to_tuple(const Alignment& alignment) {
 
 py::tuple bound_align_scans(const std::vector<Scan>& scans, std::optional<double> reach,
                             int iterations, const py::object& callback, int threads) {
-  const AlignOptions options{reach, iterations, to_progress(callback), threads};
+  const AlignOptions options{reach, iterations, to_run(callback, threads)};
   const std::vector<ScanView> views = views_of(scans);
   Alignment alignment;
   {
@@ -97,7 +97,7 @@ py::tuple bound_align_to_surface(const std::vector<Scan>& scans,
                                  const Array<double>& positions,
                                  const Array<std::int32_t>& triangles, std::optional<double> reach,
                                  int iterations, const py::object& callback, int threads) {
-  const AlignOptions options{reach, iterations, to_progress(callback), threads};
+  const AlignOptions options{reach, iterations, to_run(callback, threads)};
   const std::vector<ScanView> views = views_of(scans);
   std::vector<RigidMotion> motions;
   for (const Array<double>& matrix : matrices) motions.push_back(motion_of(matrix));
@@ -113,8 +113,8 @@ std::pair<Array<float>, std::size_t> bound_paint_texture(
     const Surface& surface, const Array<double>& points, const Array<float>& values, int width,
     int height, const WrapNames& wrap, double smoothing, std::optional<double> reach,
     const py::object& callback, int threads) {
-  const PaintOptions options{
-      width, height, wrap_modes(wrap), smoothing, reach, to_progress(callback), threads};
+  const PaintOptions options{width,     height, wrap_modes(wrap),
+                             smoothing, reach,  to_run(callback, threads)};
   const auto channels = static_cast<int>(values.shape(1));
   const auto span = std::span(values.data(), static_cast<std::size_t>(values.size()));
   PaintedTexture painted;

@@ -61,7 +61,7 @@ std::vector<SourceMesh> sources_of(const std::vector<SourceArrays>& arrays) {
 template <typename Make>
 auto contoured(const Octree& octree, const std::vector<SourceArrays>& source_arrays,
                ContourOptions options, const py::object& progress, const Make& make) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const std::vector<SourceMesh> sources = sources_of(source_arrays);
   options.sources = sources;
   options.thickened = &octree.thickened;
@@ -113,7 +113,7 @@ std::array<int, N> sides_of(const Array<float>& grid) {
 MeshArrays bound_contour_grid(const Array<float>& grid, const Vector3& spacing,
                               const Vector3& origin, ContourOptions options,
                               const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const GridView view{grid.data(), sides_of<3>(grid)};
   TriangleMesh mesh;
   {
@@ -128,7 +128,7 @@ using Pair = std::array<double, 2>;
 std::vector<Array<double>> bound_contour_outlines(const Array<float>& grid, const Pair& spacing,
                                                   const Pair& origin, ContourOptions options,
                                                   const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const PlaneView view{grid.data(), sides_of<2>(grid)};
   std::vector<OutlinePoints> outlines;
   {

@@ -21,7 +21,7 @@ void bind_cutout(py::module_& m) {
       "keep_coverage",
       [](const std::vector<Array<float>>& levels, const std::vector<const Surface*>& surfaces,
          CoverageOptions options, const py::object& progress) {
-        options.progress = to_progress(progress);
+        options.run = to_run(progress, options.run.threads());
         const std::vector<ImageView> views = views_of(levels);
         std::vector<Image> kept;
         {

@@ -42,7 +42,7 @@ void bind_mipmap_options(py::module_& m) {
 
 std::vector<Array<float>> bound_float_levels(const Array<float>& array, const Surfaces& surfaces,
                                              MipmapOptions options, const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const ImageView image = view_of(array);
   std::vector<Image> images;
   {
@@ -55,7 +55,7 @@ std::vector<Array<float>> bound_float_levels(const Array<float>& array, const Su
 std::vector<Image> levels_of_bytes(const Array<std::uint8_t>& array, bool srgb,
                                    const Surfaces& surfaces, MipmapOptions options,
                                    const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const ByteValues values = byte_values(srgb);
   const TexelSource image = bytes_of(array, &values);
   const py::gil_scoped_release unlocked;
@@ -79,7 +79,7 @@ std::vector<Array<std::uint8_t>> bound_byte_levels(const Array<std::uint8_t>& ar
     std::vector<std::uint8_t> bytes;
     {
       const py::gil_scoped_release unlocked;
-      bytes = to_bytes(level.view(), srgb, options.threads);
+      bytes = to_bytes(level.view(), srgb, options.run.threads());
     }
     Array<std::uint8_t> result({level.height, level.width, level.channels});
     std::copy(bytes.begin(), bytes.end(), result.mutable_data());
@@ -99,9 +99,9 @@ std::vector<double> bound_mipmap_error(const std::vector<Array<float>>& levels,
   const ImageView image = view_of(array);
   const WrapModes modes = wrap_modes(wrap);
   const Reader reads = value_named("reader", reader, kReaders);
-  const Progress reporter = to_progress(progress);
+  const Run reporter = to_run(progress, threads);
   const py::gil_scoped_release unlocked;
-  return mipmap_error(views, image, surfaces, mip_values, modes, reads, reporter, threads);
+  return mipmap_error(views, image, surfaces, mip_values, modes, reads, reporter);
 }
 
 std::vector<double> bound_seam_contrast(const std::vector<Array<float>>& levels,
@@ -109,7 +109,7 @@ std::vector<double> bound_seam_contrast(const std::vector<Array<float>>& levels,
                                         const WrapNames& wrap, const py::object& progress) {
   const std::vector<ImageView> views = views_of(levels);
   const WrapModes modes = wrap_modes(wrap);
-  const Progress reporter = to_progress(progress);
+  const Run reporter = to_run(progress);
   const py::gil_scoped_release unlocked;
   return seam_contrast(views, surfaces, modes, reporter);
 }
@@ -117,11 +117,11 @@ std::vector<double> bound_seam_contrast(const std::vector<Array<float>>& levels,
 Array<float> bound_texel_weights(const std::vector<const Surface*>& surfaces, int width, int height,
                                  const WrapNames& wrap, const py::object& progress, int threads) {
   const WrapModes modes = wrap_modes(wrap);
-  const Progress reporter = to_progress(progress);
+  const Run reporter = to_run(progress, threads);
   Image weights;
   {
     const py::gil_scoped_release unlocked;
-    weights = texel_weights(surfaces, width, height, modes, reporter, threads);
+    weights = texel_weights(surfaces, width, height, modes, reporter);
   }
   return to_array(std::move(weights));
 }
@@ -130,11 +130,11 @@ Array<float> bound_fill_transparent(const Array<float>& array, const WrapNames& 
                                     const py::object& progress, int threads) {
   const ImageView image = view_of(array);
   const WrapModes modes = wrap_modes(wrap);
-  const Progress reporter = to_progress(progress);
+  const Run reporter = to_run(progress, threads);
   Image filled;
   {
     const py::gil_scoped_release unlocked;
-    filled = fill_transparent(image, modes, reporter, threads);
+    filled = fill_transparent(image, modes, reporter);
   }
   return to_array(std::move(filled));
 }
@@ -144,11 +144,11 @@ Array<float> bound_fill_unused(const Array<float>& array,
                                const py::object& progress, int threads) {
   const ImageView image = view_of(array);
   const WrapModes modes = wrap_modes(wrap);
-  const Progress reporter = to_progress(progress);
+  const Run reporter = to_run(progress, threads);
   Image filled;
   {
     const py::gil_scoped_release unlocked;
-    filled = fill_unused(image, surfaces, modes, reporter, threads);
+    filled = fill_unused(image, surfaces, modes, reporter);
   }
   return to_array(std::move(filled));
 }

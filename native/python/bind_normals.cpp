@@ -27,7 +27,7 @@ void bind_normals(py::module_& m) {
       "normal_mipmaps",
       [](const Array<float>& normals, const std::optional<Array<float>>& roughness,
          const std::vector<const Surface*>& surfaces, Options options, const py::object& progress) {
-        options.progress = to_progress(progress);
+        options.run = to_run(progress, options.run.threads());
         const ImageView normals_view = view_of(normals);
         const ImageView roughness_view = roughness ? view_of(*roughness) : ImageView();
         NormalMipmaps mipmaps;

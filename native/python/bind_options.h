@@ -42,8 +42,10 @@ pybind11::class_<Options> bind_options(pybind11::module_& m, const char* name) {
   if constexpr (requires { &Options::premultiplied; }) {
     bound.def_readwrite("premultiplied", &Options::premultiplied);
   }
-  if constexpr (requires { &Options::threads; }) {
-    bound.def_readwrite("threads", &Options::threads);
+  if constexpr (requires { &Options::run; }) {
+    bound.def_property(
+        "threads", [](const Options& o) { return o.run.threads(); },
+        [](Options& o, int threads) { o.run = o.run.with_threads(threads); });
   }
   return bound;
 }

@@ -164,7 +164,7 @@ using DrawnShape = std::tuple<const Outline*, std::string, const Paint*, bool>;
 
 py::array bound_rasterize(const std::vector<DrawnShape>& drawn, RasterOptions options,
                           bool is_bytes, const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   std::vector<Shape> shapes;
   shapes.reserve(drawn.size());
   for (const auto& [outline, fill_rule, paint, winds_once] : drawn) {

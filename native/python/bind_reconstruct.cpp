@@ -95,13 +95,13 @@ py::list to_list(const std::vector<PhantomPlace>& phantoms) {
 }
 
 py::list bound_find_phantoms(const Array<double>& points, const py::object& callback, int threads) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, threads);
   std::vector<PhantomPlace> phantoms;
   {
     const py::gil_scoped_release unlocked;
     // Normals are not used here.
     ArraySource source(rows_of(points), rows_of(points), {}, {}, {}, true);
-    phantoms = find_phantoms(&source, progress, threads);
+    phantoms = find_phantoms(&source, run);
   }
   return to_list(phantoms);
 }
@@ -139,7 +139,7 @@ py::dict to_dict(const ReconstructReport& report) {
 
 std::tuple<Array<double>, Array<std::int32_t>, Array<float>, py::dict> bound_reconstruct(
     PointSource* source, ReconstructOptions options, const py::object& callback) {
-  options.progress = to_progress(callback);
+  options.run = to_run(callback, options.run.threads());
   ArraySink sink;
   ReconstructReport report;
   {
@@ -161,16 +161,15 @@ std::tuple<Array<double>, Array<std::int32_t>, Array<float>, py::dict> bound_tri
     const Array<double>& positions, const Array<std::int32_t>& triangles,
     const Array<float>& attributes, double distance, double hole, double island,
     const py::object& callback) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback);
   const auto columns = attributes.shape(1);
   const auto values = std::span(attributes.data(), static_cast<std::size_t>(attributes.size()));
   TrimmedMesh mesh;
   TrimReport report;
   {
     const py::gil_scoped_release unlocked;
-    report =
-        trim_surface(rows_of(positions), rows_of(triangles), values,
-                     static_cast<std::size_t>(columns), {distance, hole, island}, progress, &mesh);
+    report = trim_surface(rows_of(positions), rows_of(triangles), values,
+                          static_cast<std::size_t>(columns), {distance, hole, island}, run, &mesh);
   }
   py::dict cut_report;
   cut_report["cut"] = report.cut;
@@ -195,14 +194,14 @@ std::unique_ptr<PlyMeshWriter> mesh_writer(const PointSource& source, const std:
 
 py::dict bound_reconstruct_file(PointSource* source, const std::string& target,
                                 ReconstructOptions options, const py::object& callback) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, options.run.threads());
   ReconstructReport report;
   {
     const py::gil_scoped_release unlocked;
     const std::unique_ptr<PlyMeshWriter> writer = mesh_writer(*source, target, options);
-    options.progress = progress.part(0.0, 0.95);
+    options.run = run.part(0.0, 0.95);
     report = reconstruct(source, options, writer.get());
-    if (report.normal_fault == NormalFault::kNone) writer->finish(progress.part(0.95, 1.0));
+    if (report.normal_fault == NormalFault::kNone) writer->finish(run.part(0.95, 1.0));
   }
   return to_dict(report);
 }
@@ -210,7 +209,7 @@ py::dict bound_reconstruct_file(PointSource* source, const std::string& target,
 // Runs a step that writes a file from one source, from all counts, or from all cells.
 void bound_step(const std::string& step, PointSource* source, std::size_t number,
                 const StepFiles& files, ReconstructOptions options, const py::object& callback) {
-  options.progress = to_progress(callback);
+  options.run = to_run(callback, options.run.threads());
   const py::gil_scoped_release unlocked;
   if (step == "measure") measure_step(source, number, files, options);
   if (step == "count") count_step(source, number, files, options);
@@ -220,14 +219,14 @@ void bound_step(const std::string& step, PointSource* source, std::size_t number
 
 py::dict bound_join(PointSource* source, const StepFiles& files, const std::string& target,
                     ReconstructOptions options, const py::object& callback) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, options.run.threads());
   ReconstructReport report;
   {
     const py::gil_scoped_release unlocked;
     const std::unique_ptr<PlyMeshWriter> writer = mesh_writer(*source, target, options);
-    options.progress = progress.part(0.0, 0.95);
+    options.run = run.part(0.0, 0.95);
     report = join_step(source->attributes().size(), files, options, writer.get());
-    writer->finish(progress.part(0.95, 1.0));
+    writer->finish(run.part(0.95, 1.0));
   }
   return to_dict(report);
 }

@@ -73,7 +73,7 @@ Array<float> to_samples(std::vector<float> values, const Array<double>& coordina
 std::vector<Array<float>> bound_sampling_levels(const Array<float>& array,
                                                 SamplingLevelsOptions options,
                                                 const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const ImageView image = view_of(array);
   std::vector<Image> images;
   {
@@ -86,7 +86,7 @@ std::vector<Array<float>> bound_sampling_levels(const Array<float>& array,
 Array<float> bound_sample_exact(const Array<float>& array, const Array<double>& coordinates,
                                 const Array<double>& scales, ExactOptions options,
                                 const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const ImageView image = view_of(array);
   std::vector<float> values;
   {
@@ -99,7 +99,7 @@ Array<float> bound_sample_exact(const Array<float>& array, const Array<double>& 
 Array<float> bound_sample_ewa(const Array<float>& array, const Array<double>& coordinates,
                               const Array<double>& jacobians, EllipticalOptions options,
                               const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const ImageView image = view_of(array);
   std::vector<float> values;
   {
@@ -113,7 +113,7 @@ Array<float> bound_sample_anisotropic(const std::vector<py::array>& levels,
                                       const SamplingTable* table, const Array<double>& coordinates,
                                       const Array<double>& jacobians, AnisotropicOptions options,
                                       const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const Pyramid pyramid = pyramid_of(levels);
   std::vector<float> values(static_cast<std::size_t>(coordinates.shape(0) * pyramid.channels));
   {
@@ -134,7 +134,7 @@ Array<float> bound_sample_stochastic(const std::vector<py::array>& levels,
                                      const Array<double>& coordinates, const Array<double>& scales,
                                      const Array<double>& numbers, SampleOptions options,
                                      const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const Pyramid pyramid = pyramid_of(levels);
   const std::span<const double> picks(numbers.data(), static_cast<std::size_t>(numbers.size()));
   std::vector<float> values(static_cast<std::size_t>(coordinates.shape(0) * pyramid.channels));
@@ -153,7 +153,7 @@ PickedArrays bound_pick_texels(const std::vector<py::array>& levels, const Sampl
                                bool bilinear, const Array<double>& coordinates,
                                const Array<double>& scales, const Array<double>& numbers,
                                SampleOptions options, const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const Pyramid pyramid = pyramid_of(levels);
   const std::span<const double> picks(numbers.data(), static_cast<std::size_t>(numbers.size()));
   std::vector<std::int32_t> texels;
@@ -178,7 +178,7 @@ Array<float> bound_resample(const Array<float>& array, const Array<double>& tran
   const ImageView image = view_of(array);
   Homography homography{};
   std::copy_n(transform.data(), homography.size(), homography.begin());
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   if (table != nullptr) {
     options.method = ResampleOptions::Method::kTable;
     options.table = table;

@@ -29,7 +29,7 @@ void bind_resize_options(py::module_& m) {
 
 Array<float> bound_resize(const Array<float>& array, int width, int height, ResizeOptions options,
                           const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const ImageView image = view_of(array);
   Image result;
   {
@@ -42,14 +42,14 @@ Array<float> bound_resize(const Array<float>& array, int width, int height, Resi
 Array<std::uint8_t> bound_resize_bytes(const Array<std::uint8_t>& array, bool srgb, int width,
                                        int height, ResizeOptions options,
                                        const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const ByteValues values = byte_values(srgb);
   const TexelSource image = bytes_of(array, &values);
   std::vector<std::uint8_t> bytes;
   {
     const py::gil_scoped_release unlocked;
     const Image result = resize(image, width, height, options);
-    bytes = to_bytes(result.view(), srgb, options.threads);
+    bytes = to_bytes(result.view(), srgb, options.run.threads());
   }
   return to_array<std::uint8_t>(std::move(bytes), {height, width, image.channels});
 }

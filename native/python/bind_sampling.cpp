@@ -20,7 +20,7 @@ Array<float> bound_sample(const std::vector<py::array>& levels, const SamplingTa
                           const Array<double>& coordinates, const Array<double>& scales,
                           SampleOptions options, const py::object& progress) {
   const Pyramid pyramid = pyramid_of(levels);
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   Array<float> result({coordinates.shape(0), static_cast<py::ssize_t>(pyramid.channels)});
   const std::span<const std::array<double, 2>> places(
       reinterpret_cast<const std::array<double, 2>*>(coordinates.data()),

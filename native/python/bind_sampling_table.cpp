@@ -42,7 +42,7 @@ void bind_table_shape(py::module_& m) {
 
 SamplingTable bound_build(const TableShape& shape, bool certify, const py::object& progress,
                           int threads) {
-  const BuildTableOptions options{shape, certify, to_progress(progress), threads};
+  const BuildTableOptions options{shape, certify, to_run(progress, threads)};
   const py::gil_scoped_release unlocked;
   return build_sampling_table(options);
 }

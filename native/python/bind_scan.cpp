@@ -130,7 +130,7 @@ void append_attributes(const PointBatch& batch, const std::vector<PointAttribute
 
 // Reads the points 0, stride, 2 * stride and so on. The stride is the smallest that leaves at most
 // `most` points, or a power of two if their number is unknown.
-AllPoints read_all(PointSource* source, std::size_t most, const Progress& progress) {
+AllPoints read_all(PointSource* source, std::size_t most, const Run& run) {
   const std::vector<PointAttribute>& attributes = source->attributes();
   AllPoints all;
   if (source->count()) all.stride = std::max<std::size_t>(thinned_count(*source->count(), most), 1);
@@ -154,21 +154,21 @@ AllPoints read_all(PointSource* source, std::size_t most, const Progress& progre
       all.stride *= 2;
     }
     if (source->count()) {
-      progress.report(static_cast<double>(seen) / static_cast<double>(*source->count()));
+      run.report(static_cast<double>(seen) / static_cast<double>(*source->count()));
     } else {
-      progress.report(0.0);
+      run.report(0.0);
     }
   }
-  progress.report(1.0);
+  run.report(1.0);
   return all;
 }
 
 py::tuple bound_read_points(PointSource* source, std::size_t most, const py::object& callback) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback);
   AllPoints all;
   {
     const py::gil_scoped_release unlocked;
-    all = read_all(source, most, progress);
+    all = read_all(source, most, run);
   }
   const auto count = static_cast<py::ssize_t>(all.positions.size());
   py::object normals = py::none();
@@ -194,22 +194,22 @@ py::tuple bound_read_points(PointSource* source, std::size_t most, const py::obj
 // `File` is a path or a decompressed file.
 template <typename File>
 py::object bound_read_range_grid(const File& file, const py::object& callback) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback);
   std::optional<RangeGrid> grid;
   {
     const py::gil_scoped_release unlocked;
-    grid = read_range_grid(file, progress);
+    grid = read_range_grid(file, run);
   }
   if (!grid) return py::none();
   return to_array<std::int64_t>(std::move(grid->points), {grid->rows, grid->columns});
 }
 
 py::tuple bound_read_ply_mesh(const std::string& path, const py::object& callback) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback);
   PlyMesh mesh;
   {
     const py::gil_scoped_release unlocked;
-    mesh = read_ply_mesh(path, progress);
+    mesh = read_ply_mesh(path, run);
   }
   const auto rows = [](const auto& vector) { return static_cast<py::ssize_t>(vector.size()); };
   const py::ssize_t counts[] = {rows(mesh.positions), rows(mesh.sizes), rows(mesh.corners)};
@@ -224,11 +224,11 @@ py::tuple bound_read_ply_mesh(const std::string& path, const py::object& callbac
 
 template <typename File>
 Array<std::int64_t> bound_read_faces(const File& file, const py::object& callback) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback);
   std::vector<std::array<std::int64_t, 3>> triangles;
   {
     const py::gil_scoped_release unlocked;
-    triangles = read_faces(file, progress);
+    triangles = read_faces(file, run);
   }
   const auto count = static_cast<py::ssize_t>(triangles.size());
   return to_array<std::int64_t>(std::move(triangles), {count, 3});
@@ -237,44 +237,43 @@ Array<std::int64_t> bound_read_faces(const File& file, const py::object& callbac
 Array<double> bound_estimate_normals(const Array<double>& points, int neighbours,
                                      const Array<double>& viewpoints, const std::string& direction,
                                      const py::object& callback, int threads) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, threads);
   const NormalSide side = value_named("direction", direction, kNormalSides);
   std::vector<Vector3> normals;
   {
     const py::gil_scoped_release unlocked;
-    normals =
-        estimate_normals(rows_of(points), neighbours, rows_of(viewpoints), side, progress, threads);
+    normals = estimate_normals(rows_of(points), neighbours, rows_of(viewpoints), side, run);
   }
   return to_array<double>(std::move(normals), {points.shape(0), 3});
 }
 
 Array<double> bound_directed_normals(const Array<double>& points, const Array<double>& normals,
                                      const py::object& callback, int threads) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, threads);
   std::vector<Vector3> directed;
   {
     const py::gil_scoped_release unlocked;
-    directed = directed_normals(rows_of(points), rows_of(normals), progress, threads);
+    directed = directed_normals(rows_of(points), rows_of(normals), run);
   }
   return to_array<double>(std::move(directed), {points.shape(0), 3});
 }
 
 Array<double> bound_completed_normals(const Array<double>& points, const Array<double>& normals,
                                       int neighbours, const py::object& callback, int threads) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, threads);
   std::vector<Vector3> completed;
   {
     const py::gil_scoped_release unlocked;
-    completed = completed_normals(rows_of(points), rows_of(normals), neighbours, progress, threads);
+    completed = completed_normals(rows_of(points), rows_of(normals), neighbours, run);
   }
   return to_array<double>(std::move(completed), {points.shape(0), 3});
 }
 
 std::string bound_origin_role(const Array<double>& points, const py::object& callback,
                               int threads) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, threads);
   const py::gil_scoped_release unlocked;
-  const OriginRole role = origin_role(rows_of(points), progress, threads);
+  const OriginRole role = origin_role(rows_of(points), run);
   for (const auto& each : kOriginRoles) {
     if (each.value == role) return std::string(each.name);
   }
@@ -283,25 +282,25 @@ std::string bound_origin_role(const Array<double>& points, const py::object& cal
 
 Array<double> bound_mesh_normals(const py::array& points, const py::array& triangles,
                                  const py::object& callback) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback);
   const InputMesh mesh = mesh_of(points, triangles);
   std::vector<Vector3> normals;
   {
     const py::gil_scoped_release unlocked;
-    normals = mesh_normals(mesh, progress);
+    normals = mesh_normals(mesh, run);
   }
   return to_array<double>(std::move(normals), {points.shape(0), 3});
 }
 
 py::tuple bound_grid_normals(const Array<double>& points, const Array<std::int64_t>& grid,
                              const std::optional<Vector3>& viewpoint, const py::object& callback) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback);
   GridNormals normals;
   {
     const py::gil_scoped_release unlocked;
     const RangeGrid range_grid = {
         grid.shape(0), grid.shape(1), {grid.data(), grid.data() + grid.size()}};
-    normals = grid_normals(rows_of(points), range_grid, viewpoint, progress);
+    normals = grid_normals(rows_of(points), range_grid, viewpoint, run);
   }
   return py::make_tuple(to_array<double>(std::move(normals.normals), {points.shape(0), 3}),
                         to_array<float>(std::move(normals.weights), {points.shape(0)}));
@@ -415,9 +414,9 @@ void bind_scan(py::module_& m) {
   m.def(
       "is_height_field",
       [](const Array<double>& points, const py::object& callback) {
-        const Progress progress = to_progress(callback);
+        const Run run = to_run(callback);
         const py::gil_scoped_release unlocked;
-        return is_height_field(rows_of(points), progress);
+        return is_height_field(rows_of(points), run);
       },
       py::arg("points"), py::arg("progress"));
 }

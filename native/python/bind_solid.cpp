@@ -30,8 +30,7 @@ std::tuple<py::array, py::array, std::size_t, std::size_t, std::size_t> bound_cl
     const py::object& callback, int threads) {
   CloseHolesOptions options;
   options.method = value_named("method", method, kHoleMethods);
-  options.threads = threads;
-  options.progress = to_progress(callback);
+  options.run = to_run(callback, threads);
   const InputMesh mesh = mesh_of(positions, triangles);
   Caps caps;
   {
@@ -56,7 +55,7 @@ std::tuple<py::array, py::array, std::size_t, std::size_t, std::size_t> bound_cl
 // report.
 py::tuple bound_as_solid(const py::array& positions, const py::array& triangles,
                          SolidOptions options, const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const InputMesh mesh_view = mesh_of(positions, triangles);
   Solid solid;
   {
@@ -83,12 +82,12 @@ std::pair<Array<std::int32_t>, Array<std::int32_t>> bound_mesh_edges(const py::a
                                                                      const py::array& triangles,
                                                                      const py::object& callback,
                                                                      int threads) {
-  const Progress progress = to_progress(callback);
+  const Run progress = to_run(callback, threads);
   const InputMesh mesh = mesh_of(positions, triangles);
   MeshEdges edges;
   {
     const py::gil_scoped_release unlocked;
-    edges = find_mesh_edges(mesh, progress, threads);
+    edges = find_mesh_edges(mesh, progress);
   }
   const auto count = static_cast<py::ssize_t>(edges.vertices.size());
   const auto corners = static_cast<py::ssize_t>(edges.of_corners.size());
@@ -102,12 +101,12 @@ std::tuple<std::size_t, std::size_t, std::size_t, std::optional<std::size_t>, Ar
            Array<std::int32_t>>
 bound_mesh_topology(const py::array& positions, const py::array& triangles, bool welds,
                     const py::object& callback, int threads) {
-  const Progress progress = to_progress(callback);
+  const Run progress = to_run(callback, threads);
   const InputMesh mesh = mesh_of(positions, triangles);
   MeshTopology topology;
   {
     const py::gil_scoped_release unlocked;
-    topology = mesh_topology(mesh, welds, progress, threads);
+    topology = mesh_topology(mesh, welds, progress);
   }
   const auto count = static_cast<py::ssize_t>(topology.part_of.size());
   const auto edges = static_cast<py::ssize_t>(topology.border_edges.size());

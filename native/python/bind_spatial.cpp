@@ -41,31 +41,31 @@ Found point_arrays(const std::vector<SurfacePoint>& points) {
 
 std::unique_ptr<NearestPoints> bound_tree(const py::array& positions, const py::array& triangles,
                                           const py::object& callback, int threads) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, threads);
   const InputMesh mesh = mesh_of(positions, triangles);
   const py::gil_scoped_release unlocked;
-  return std::make_unique<NearestPoints>(mesh, progress, threads);
+  return std::make_unique<NearestPoints>(mesh, run);
 }
 
 Found bound_find(const NearestPoints& tree, const Array<double>& points, const py::object& callback,
                  int threads) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, threads);
   std::vector<SurfacePoint> nearest;
   {
     const py::gil_scoped_release unlocked;
-    nearest = tree.find(rows_of(points), progress, threads);
+    nearest = tree.find(rows_of(points), run);
   }
   return point_arrays(nearest);
 }
 
 Found bound_nearest_points(const Array<double>& points, const py::array& positions,
                            const py::array& triangles, const py::object& callback, int threads) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, threads);
   const InputMesh mesh = mesh_of(positions, triangles);
   std::vector<SurfacePoint> nearest;
   {
     const py::gil_scoped_release unlocked;
-    nearest = nearest_points(rows_of(points), mesh, progress, threads);
+    nearest = nearest_points(rows_of(points), mesh, run);
   }
   return point_arrays(nearest);
 }
@@ -75,14 +75,13 @@ std::tuple<Found, Array<std::int32_t>> bound_corner_points(
     const py::array& positions, const py::array& triangles, const Array<std::int32_t>& origins,
     const py::array& source_positions, const py::array& source_triangles,
     const Array<std::int32_t>& labels, const py::object& callback, int threads) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, threads);
   const InputMesh surface = mesh_of(positions, triangles);
   const InputMesh source = mesh_of(source_positions, source_triangles);
   CornerPoints corner_points;
   {
     const py::gil_scoped_release unlocked;
-    corner_points = find_corner_points(surface, values_of(origins), source, values_of(labels),
-                                       progress, threads);
+    corner_points = find_corner_points(surface, values_of(origins), source, values_of(labels), run);
   }
   const auto count = static_cast<py::ssize_t>(corner_points.corners.size());
   return {point_arrays(corner_points.points),
@@ -92,24 +91,24 @@ std::tuple<Found, Array<std::int32_t>> bound_corner_points(
 std::tuple<std::pair<Vector3, Vector3>, double, double> bound_measure_mesh(
     const py::array& positions, const py::array& triangles, const py::object& callback,
     int threads) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, threads);
   const InputMesh mesh = mesh_of(positions, triangles);
   MeshMeasures measures;
   {
     const py::gil_scoped_release unlocked;
-    measures = measure_mesh(mesh, progress, threads);
+    measures = measure_mesh(mesh, run);
   }
   return {{measures.box.low, measures.box.high}, measures.area, measures.volume};
 }
 
 Array<std::int64_t> bound_self_intersections(const py::array& positions, const py::array& triangles,
                                              const py::object& callback, int threads) {
-  const Progress progress = to_progress(callback);
+  const Run run = to_run(callback, threads);
   const InputMesh mesh = mesh_of(positions, triangles);
   std::vector<std::array<std::uint32_t, 2>> pairs;
   {
     const py::gil_scoped_release unlocked;
-    pairs = self_intersections(mesh, progress, threads);
+    pairs = self_intersections(mesh, run);
   }
   Array<std::int64_t> rows({static_cast<py::ssize_t>(pairs.size()), py::ssize_t{2}});
   std::int64_t* next = rows.mutable_data();

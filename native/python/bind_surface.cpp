@@ -60,7 +60,7 @@ Surface bound_surface(const Array<double>& positions, const Array<std::int64_t>&
 Array<std::int32_t> bound_uv_charts(const py::array& positions, const py::array& triangles,
                                     const std::vector<Array<float>>& uvs,
                                     const py::object& callback, int threads) {
-  const Progress progress = to_progress(callback);
+  const Run progress = to_run(callback, threads);
   const InputMesh mesh = mesh_of(positions, triangles);
   std::vector<CornerUvs> maps;
   for (const Array<float>& map : uvs) {
@@ -70,7 +70,7 @@ Array<std::int32_t> bound_uv_charts(const py::array& positions, const py::array&
   std::vector<std::int32_t> charts;
   {
     const py::gil_scoped_release unlocked;
-    charts = find_charts(mesh, maps, progress, threads);
+    charts = find_charts(mesh, maps, progress);
   }
   return to_array<std::int32_t>(std::move(charts), {triangles.shape(0)});
 }
@@ -79,7 +79,7 @@ Array<std::int64_t> bound_triangulate_polygons(const Array<double>& positions,
                                                const Array<std::int64_t>& corners,
                                                const Array<std::int64_t>& sizes,
                                                const py::object& callback) {
-  const Progress progress = to_progress(callback);
+  const Run progress = to_run(callback);
   const PositionView points = rows_of(positions);
   std::vector<std::array<std::int64_t, 3>> triangles;
   {
@@ -169,7 +169,7 @@ Surface bound_subdivide(const PolygonMesh& arrays, SubdivisionOptions options,
     mesh.weights_of = weights_kind(arrays.weights_of);
   }
   if (arrays.kept) mesh.kept = arrays.kept->data();
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const py::gil_scoped_release unlocked;
   return subdivide(mesh, options);
 }

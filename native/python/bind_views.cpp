@@ -18,7 +18,7 @@ namespace {
 std::vector<Array<float>> bound_fit_to_views(const std::vector<Array<float>>& levels,
                                              const std::vector<const Surface*>& surfaces,
                                              ViewFitOptions options, const py::object& progress) {
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, options.run.threads());
   const std::vector<ImageView> views = views_of(levels);
   std::vector<Image> images;
   {

@@ -38,8 +38,7 @@ Octree bound_voxelize(const py::array& positions, const py::array& triangles, in
   options.depth = depth;
   options.thickness = thickness;
   if (bounds) options.bounds = to_box(*bounds);
-  options.threads = threads;
-  options.progress = to_progress(progress);
+  options.run = to_run(progress, threads);
   const InputMesh mesh = mesh_of(positions, triangles);
   const py::gil_scoped_release unlocked;
   return voxelize(mesh, options);
@@ -48,17 +47,17 @@ Octree bound_voxelize(const py::array& positions, const py::array& triangles, in
 Octree bound_combine(const Octree& a, const Octree& b, const std::string& name,
                      const py::object& callback, int threads) {
   const SetOperation operation = value_named("operation", name, kSetOperations);
-  const Progress progress = to_progress(callback);
+  const Run progress = to_run(callback, threads);
   const py::gil_scoped_release unlocked;
-  return combine(a, b, operation, progress, threads);
+  return combine(a, b, operation, progress);
 }
 
 Array<float> bound_dense(const Octree& octree, int depth, const py::object& callback, int threads) {
-  const Progress progress = to_progress(callback);
+  const Run progress = to_run(callback, threads);
   std::vector<float> values;
   {
     const py::gil_scoped_release unlocked;
-    values = dense_values(octree, depth, progress, threads);
+    values = dense_values(octree, depth, progress);
   }
   const py::ssize_t n = py::ssize_t{1} << depth;
   return to_array<float>(std::move(values), {n, n, n});

@@ -17,8 +17,8 @@
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/image.h"
 #include "prefilter/base/names.h"
-#include "prefilter/base/progress.h"
 #include "prefilter/base/rigid_motion.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 
 namespace prefilter::python {
@@ -96,6 +96,6 @@ WrapModes wrap_modes(const WrapNames& names);
 bool is_finalizing();
 
 /// Reports to a Python callable, or to nothing for None. Raises keyboard interrupts in both cases.
-Progress to_progress(const pybind11::object& callback);
+Run to_run(const pybind11::object& callback, int threads = 0);
 
 }  // namespace prefilter::python

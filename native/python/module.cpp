@@ -93,8 +93,8 @@ bool is_finalizing() {
 #endif
 }
 
-Progress to_progress(const py::object& callback) {
-  return Progress([callback = py::handle(callback)](double fraction) {
+Run to_run(const py::object& callback, int threads) {
+  return Run(threads, [callback = py::handle(callback)](double fraction) {
     if (is_finalizing()) return false;
     const py::gil_scoped_acquire locked;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -13,14 +13,14 @@ namespace prefilter {
 /// cancelled. The progress must outlive it.
 class CancelCheck {
  public:
-  explicit CancelCheck(const Progress& progress) : progress_(progress) {}
+  explicit CancelCheck(const Run& run) : run_(run) {}
   void step() {
-    if (++steps_ % kStepsPerReport == 0) progress_.report(0.0);
+    if (++steps_ % kStepsPerReport == 0) run_.report(0.0);
   }
 
  private:
   static constexpr std::uint32_t kStepsPerReport = 1 << 12;
-  const Progress& progress_;
+  const Run& run_;
   std::uint32_t steps_ = 0;
 };
 

@@ -17,10 +17,10 @@ void check_channels(const ImageView& image, const char* name) {
   }
 }
 
-bool all_filterable(const ImageView& image, const Progress& progress, int threads) {
+bool all_filterable(const ImageView& image, const Run& run) {
   const std::size_t row_values = image.value_count() / static_cast<std::size_t>(image.height);
   std::atomic<bool> result{true};
-  parallel_for(image.height, threads, progress, [&](std::int64_t y) {
+  parallel_for(image.height, run, [&](std::int64_t y) {
     const float* row = image.texel(0, static_cast<int>(y));
     // Without an early exit, so that it can be vectorized.
     int invalid = 0;

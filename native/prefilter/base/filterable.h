@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -20,6 +20,6 @@ inline constexpr float kLargestValue = 1e30F;
 inline bool is_filterable(float value) { return std::abs(value) <= kLargestValue; }
 
 /// Whether all values of the image can be filtered.
-bool all_filterable(const ImageView& image, const Progress& progress, int threads);
+bool all_filterable(const ImageView& image, const Run& run);
 
 }  // namespace prefilter

@@ -8,7 +8,7 @@ namespace prefilter {
 
 Image to_floats(const TexelSource& bytes, int threads) {
   Image result(bytes.width, bytes.height, bytes.channels);
-  parallel_for(bytes.height, threads, Progress(), [&](std::int64_t y) {
+  parallel_for(bytes.height, Run(threads), [&](std::int64_t y) {
     const std::uint8_t* byte = bytes.byte_texel(0, static_cast<int>(y));
     float* value = result.texel(0, static_cast<int>(y));
     for (int x = 0; x < bytes.width; ++x) {

@@ -48,7 +48,7 @@ int resolve_threads(int threads) {
   return processors;
 }
 
-void parallel_for(std::int64_t count, int threads, const Progress& progress,
+void parallel_for(std::int64_t count, const Run& run,
                   const std::function<void(std::int64_t)>& body) {
   std::atomic<std::int64_t> next{0};
   std::atomic<bool> stop{false};
@@ -60,9 +60,9 @@ void parallel_for(std::int64_t count, int threads, const Progress& progress,
       while (!stop.load(std::memory_order_relaxed)) {
         const std::int64_t i = next.fetch_add(1, std::memory_order_relaxed);
         if (i >= count) break;
-        if (!reports) progress.wait_while_held();
+        if (!reports) run.wait_while_held();
         body(i);
-        if (reports) progress.report(static_cast<double>(i + 1) / static_cast<double>(count));
+        if (reports) run.report(static_cast<double>(i + 1) / static_cast<double>(count));
       }
     } catch (...) {
       const std::lock_guard<std::mutex> lock(failure_mutex);
@@ -72,19 +72,19 @@ void parallel_for(std::int64_t count, int threads, const Progress& progress,
   };
 
   const auto helper_count =
-      static_cast<int>(std::min<std::int64_t>(resolve_threads(threads), count)) - 1;
+      static_cast<int>(std::min<std::int64_t>(resolve_threads(run.threads()), count)) - 1;
   {
     const WorkerThreads workers(helper_count, [&](int) { work(false); });
     work(true);
   }
   if (failure) std::rethrow_exception(failure);
-  progress.report(1.0);  // another thread may have finished last
+  run.report(1.0);  // another thread may have finished last
 }
 
-void parallel_ranges(std::int64_t count, std::int64_t grain, int threads, const Progress& progress,
+void parallel_ranges(std::int64_t count, std::int64_t grain, const Run& run,
                      const std::function<void(std::int64_t, std::int64_t)>& body) {
   assert(count >= 0 && grain >= 1);
-  parallel_for(range_count(count, grain), threads, progress, [&](std::int64_t range) {
+  parallel_for(range_count(count, grain), run, [&](std::int64_t range) {
     const std::int64_t begin = range * grain;
     body(begin, begin + std::min(grain, count - begin));
   });

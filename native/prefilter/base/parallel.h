@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -19,7 +19,7 @@ int resolve_threads(int threads);
 /// Rethrows the first exception of a body. The calling thread participates, and reports to
 /// `progress` between its indices. If that cancels, the others stop after their current index;
 /// while its callback waits, they wait too.
-void parallel_for(std::int64_t count, int threads, const Progress& progress,
+void parallel_for(std::int64_t count, const Run& run,
                   const std::function<void(std::int64_t)>& body);
 
 /// Number of ranges that parallel_ranges divides [0, count) into: count / grain, rounded up.
@@ -30,7 +30,7 @@ constexpr std::int64_t range_count(std::int64_t count, std::int64_t grain) {
 /// Calls body(begin, end) for every range of [0, count) from a multiple of `grain`, at least 1, to
 /// the next or to the end. For indices that are too cheap to be scheduled individually. Range b /
 /// grain starts at b.
-void parallel_ranges(std::int64_t count, std::int64_t grain, int threads, const Progress& progress,
+void parallel_ranges(std::int64_t count, std::int64_t grain, const Run& run,
                      const std::function<void(std::int64_t, std::int64_t)>& body);
 
 /// A team of threads that execute the same steps together.

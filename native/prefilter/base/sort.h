@@ -50,8 +50,7 @@ void merge_piece(const T* a, std::size_t a_size, const T* b, std::size_t b_size,
 /// same amount of memory again. Throws Error(kCancelled), and then leaves the elements in some
 /// order.
 template <typename T, typename Less = std::less<T>>
-void sort_in_parallel(std::vector<T>* values, const Progress& progress, int threads,
-                      const Less& less = Less()) {
+void sort_in_parallel(std::vector<T>* values, const Run& run, const Less& less = Less()) {
   using sort_detail::kPiece;
   const std::size_t count = values->size();
   const auto pieces = static_cast<std::int64_t>((count + kPiece - 1) / kPiece);
@@ -60,7 +59,7 @@ void sort_in_parallel(std::vector<T>* values, const Progress& progress, int thre
   // A pass takes about a sixth of the time of sorting the pieces.
   const double pass_share = 1.0 / (6.0 + passes);
   const double sorted = 1.0 - passes * pass_share;
-  parallel_for(pieces, threads, progress.part(0.0, sorted), [&](std::int64_t piece) {
+  parallel_for(pieces, run.part(0.0, sorted), [&](std::int64_t piece) {
     const std::size_t begin = static_cast<std::size_t>(piece) * kPiece;
     std::sort(values->data() + begin, values->data() + std::min(count, begin + kPiece), less);
   });
@@ -68,9 +67,8 @@ void sort_in_parallel(std::vector<T>* values, const Progress& progress, int thre
   std::vector<T> other(count);
   for (int pass = 0; pass < passes; ++pass) {
     const std::size_t width = kPiece << pass;
-    const Progress part =
-        progress.part(sorted + pass * pass_share, sorted + (pass + 1) * pass_share);
-    parallel_for(pieces, threads, part, [&](std::int64_t piece) {
+    const Run part = run.part(sorted + pass * pass_share, sorted + (pass + 1) * pass_share);
+    parallel_for(pieces, part, [&](std::int64_t piece) {
       const std::size_t at = static_cast<std::size_t>(piece) * kPiece;
       const std::size_t begin = at / (2 * width) * (2 * width);
       const std::size_t middle = std::min(count, begin + width);

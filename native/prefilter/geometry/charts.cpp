@@ -26,11 +26,10 @@ struct Side {
 };
 
 // For each vertex, the first vertex at its position.
-std::vector<std::uint32_t> welded(const PositionView& positions, const Progress& progress,
-                                  int threads) {
+std::vector<std::uint32_t> welded(const PositionView& positions, const Run& run) {
   std::vector<std::uint32_t> order(positions.size());
   std::iota(order.begin(), order.end(), 0U);
-  sort_in_parallel(&order, progress, threads, [&](std::uint32_t a, std::uint32_t b) {
+  sort_in_parallel(&order, run, [&](std::uint32_t a, std::uint32_t b) {
     const Vector3 p = positions[a];
     const Vector3 q = positions[b];
     return p != q ? p < q : a < b;
@@ -78,14 +77,15 @@ class Sets {
 }  // namespace
 
 std::vector<std::int32_t> find_charts(const InputMesh& mesh, std::span<const CornerUvs> maps,
-                                      const Progress& progress, int threads) {
+                                      const Run& run) {
   check_mesh(mesh, kLargestCoordinate);
   for (const CornerUvs& map : maps) {
     if (map.size() == mesh.triangles.size()) continue;
     throw_invalid("uvs: found " + std::to_string(map.size()) + " for " +
                   std::to_string(mesh.triangles.size()) + " triangles; one each is needed");
   }
-  const std::vector<std::uint32_t> first = welded(mesh.positions, progress.part(0.0, 0.3), threads);
+  const Stages stages(run, {3, 4, 3});
+  const std::vector<std::uint32_t> first = welded(mesh.positions, stages[0]);
   std::vector<Side> sides;
   sides.reserve(3 * mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -97,7 +97,7 @@ std::vector<std::int32_t> find_charts(const InputMesh& mesh, std::span<const Cor
           {(static_cast<std::uint64_t>(low) << 32U) | high, static_cast<std::uint32_t>(3 * t + i)});
     }
   }
-  sort_in_parallel(&sides, progress.part(0.3, 0.7), threads);
+  sort_in_parallel(&sides, stages[1]);
 
   Sets charts(mesh.triangles.size());
   ChartLinks links{{mesh.triangles.size(), {-1, -1, -1}}, {}};
@@ -131,7 +131,7 @@ std::vector<std::int32_t> find_charts(const InputMesh& mesh, std::span<const Cor
     }
   }
   std::vector<std::int32_t> result = charts.numbers();
-  cut_charts(mesh, maps, first, links, progress.part(0.7, 1.0), &result);
+  cut_charts(mesh, maps, first, links, stages[2], &result);
   return result;
 }
 

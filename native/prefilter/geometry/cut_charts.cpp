@@ -38,13 +38,13 @@ class SlitSplitter {
     next_ = *std::max_element(charts_.begin(), charts_.end()) + 1;
   }
 
-  void run(const Progress& progress) {
+  void run(const Run& run) {
     const std::size_t most = kMaxVisitsPerTriangle * charts_.size();
     for (const auto& [left, right] : links_.slits) {
       if (charts_[left] != charts_[right]) continue;
       if (visits_ > most) break;
       separate(left, right);
-      progress.report(static_cast<double>(visits_) / static_cast<double>(most));
+      run.report(static_cast<double>(visits_) / static_cast<double>(most));
     }
   }
 
@@ -161,11 +161,11 @@ bool are_near_uvs(const std::array<float, 2>& a, const std::array<float, 2>& b) 
 }
 
 void cut_charts(const InputMesh& mesh, std::span<const CornerUvs> maps,
-                std::span<const std::uint32_t> place, const ChartLinks& links,
-                const Progress& progress, std::vector<std::int32_t>* charts) {
-  SlitSplitter(mesh, links, charts).run(progress);
+                std::span<const std::uint32_t> place, const ChartLinks& links, const Run& run,
+                std::vector<std::int32_t>* charts) {
+  SlitSplitter(mesh, links, charts).run(run);
   *charts = PieceGrower(mesh, maps, place, links).run(*charts);
-  progress.report(1.0);
+  run.report(1.0);
 }
 
 }  // namespace prefilter

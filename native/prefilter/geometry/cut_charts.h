@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/geometry/charts.h"
 
 namespace prefilter {
@@ -31,7 +31,7 @@ bool are_near_uvs(const std::array<float, 2>& a, const std::array<float, 2>& b);
 /// `place` is equal for vertices that are identified. `charts` has a number per triangle,
 /// consecutive from 0 in order of first triangles, both before and after.
 void cut_charts(const InputMesh& mesh, std::span<const CornerUvs> maps,
-                std::span<const std::uint32_t> place, const ChartLinks& links,
-                const Progress& progress, std::vector<std::int32_t>* charts);
+                std::span<const std::uint32_t> place, const ChartLinks& links, const Run& run,
+                std::vector<std::int32_t>* charts);
 
 }  // namespace prefilter

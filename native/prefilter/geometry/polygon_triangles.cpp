@@ -257,8 +257,7 @@ void check_polygons(const PositionView& positions, std::span<const std::int64_t>
 
 std::vector<Triangle> triangulate_polygons(const PositionView& positions,
                                            std::span<const std::int64_t> corners,
-                                           std::span<const std::int64_t> sizes,
-                                           const Progress& progress) {
+                                           std::span<const std::int64_t> sizes, const Run& run) {
   check_polygons(positions, corners, sizes);
   std::vector<Triangle> triangles;
   std::vector<Vector3> points;
@@ -281,7 +280,7 @@ std::vector<Triangle> triangulate_polygons(const PositionView& positions,
       for (const auto& [a, b, c] : EarClipper(project_to_plane(points)).clip()) add(a, b, c);
     }
     first += size;
-    if (size > 0) progress.report(static_cast<double>(first) / static_cast<double>(corners.size()));
+    if (size > 0) run.report(static_cast<double>(first) / static_cast<double>(corners.size()));
   }
   return triangles;
 }

@@ -338,7 +338,7 @@ struct Refined {
 };
 
 Refined refine(const ControlMesh& control, const Far::TopologyRefiner& refiner, int level,
-               const Progress& progress) {
+               const Run& run) {
   const PrimvarRefiner primvars(refiner);
   Refined now{control.points, control.uvs, control.weights, {}};
   now.base_faces.resize(control.face_sizes.size());
@@ -348,7 +348,7 @@ Refined refine(const ControlMesh& control, const Far::TopologyRefiner& refiner, 
     Refined next;
     next.points.resize(topology.GetNumVertices());
     next.uvs.resize(topology.GetNumFVarValues());
-    const Progress part = progress.part(static_cast<double>(l - 1) / level, 1.0);
+    const Run part = run.part(static_cast<double>(l - 1) / level, 1.0);
     CancelCheck cancel_check(part);
     CancellableArray points(&next.points, &cancel_check);
     CancellableArray uvs(&next.uvs, &cancel_check);
@@ -364,9 +364,9 @@ Refined refine(const ControlMesh& control, const Far::TopologyRefiner& refiner, 
       next.base_faces[face] = now.base_faces[topology.GetFaceParentFace(face)];
     }
     now = std::move(next);
-    progress.report(static_cast<double>(l) / level);
+    run.report(static_cast<double>(l) / level);
   }
-  const Progress limits = progress.part(1.0, 1.0);
+  const Run limits = run.part(1.0, 1.0);
   CancelCheck cancel_check(limits);
   Points points(now.points.size());
   CancellableArray limit_points(&points, &cancel_check);
@@ -380,7 +380,7 @@ Refined refine(const ControlMesh& control, const Far::TopologyRefiner& refiner, 
 }
 
 Surface triangulated(const PolygonArrays& mesh, const Refined& refined,
-                     const Far::TopologyLevel& topology, const Progress& progress) {
+                     const Far::TopologyLevel& topology, const Run& run) {
   std::vector<std::int64_t> vertex_map(refined.points.size(), -1);
   std::vector<Vector3> positions;
   std::vector<double> weights;
@@ -396,7 +396,7 @@ Surface triangulated(const PolygonArrays& mesh, const Refined& refined,
     uvs.insert(uvs.end(), refined.uvs[uv].v.begin(), refined.uvs[uv].v.end());
     return place;
   };
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   for (int face = 0; face < topology.GetNumFaces(); ++face) {
     cancel_check.step();
     const int base = refined.base_faces[face];
@@ -409,13 +409,13 @@ Surface triangulated(const PolygonArrays& mesh, const Refined& refined,
       if (mesh.weights_of == WeightsOf::kTriangles) weights.push_back(mesh.weights[base]);
     }
   }
-  progress.report(0.5);
+  run.report(0.5);
   TexturedMesh textured;
   textured.mesh = {positions, triangles};
   textured.uvs = uvs.data();
   textured.weights = weights.data();
   textured.weights_of = mesh.weights_of;
-  return make_surface(textured, progress);
+  return make_surface(textured, run);
 }
 
 }  // namespace
@@ -426,14 +426,14 @@ Surface subdivide(const PolygonArrays& mesh, const SubdivisionOptions& options) 
   const ControlMesh control(mesh);
   const std::unique_ptr<Far::TopologyRefiner> refiner = control.refiner(options);
   check_creases(mesh, control, refiner->GetLevel(0));
-  options.progress.report(0.1);
+  options.run.report(0.1);
   Far::TopologyRefiner::UniformOptions refinement(options.level);
   refinement.fullTopologyInLastLevel = true;  // needed for the limit masks
   refiner->RefineUniform(refinement);
-  const Refined refined = refine(control, *refiner, options.level, options.progress.part(0.4, 0.8));
-  const Surface surface = triangulated(mesh, refined, refiner->GetLevel(options.level),
-                                       options.progress.part(0.8, 1.0));
-  options.progress.report(1.0);
+  const Refined refined = refine(control, *refiner, options.level, options.run.part(0.4, 0.8));
+  const Surface surface =
+      triangulated(mesh, refined, refiner->GetLevel(options.level), options.run.part(0.8, 1.0));
+  options.run.report(1.0);
   return surface;
 }
 

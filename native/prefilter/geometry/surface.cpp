@@ -87,7 +87,7 @@ Vector3 apply(const std::array<Vector3, 3>& rows, const Vector3& v) {
 
 double Surface::total_area() const { return std::accumulate(areas.begin(), areas.end(), 0.0); }
 
-Surface make_surface(const TexturedMesh& textured, const Progress& progress) {
+Surface make_surface(const TexturedMesh& textured, const Run& run) {
   const InputMesh& mesh = textured.mesh;
   const std::size_t count = mesh.triangles.size();
   check_mesh(mesh, std::numeric_limits<double>::max());
@@ -98,7 +98,7 @@ Surface make_surface(const TexturedMesh& textured, const Progress& progress) {
   surface.uvs.resize(count);
   surface.areas.resize(count);
   surface.triangles.resize(count);
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   surface.positions.reserve(mesh.positions.size());
   for (const Vector3& position : mesh.positions) surface.positions.push_back(position);
   for (std::size_t k = 0; k < count; ++k) {

@@ -172,7 +172,7 @@ ExrChunks exr_tiles(const TexelSource& level, int number, int first_row, int row
   assert((first_row + row_count - 1) * kExrTileSide < level.height);
   const std::int64_t count = static_cast<std::int64_t>(columns) * row_count;
   std::vector<ExrChunks> ranges(static_cast<std::size_t>(range_count(count, kTilesPerRange)));
-  parallel_ranges(count, kTilesPerRange, options.threads, Progress(),
+  parallel_ranges(count, kTilesPerRange, Run(options.threads),
                   [&](std::int64_t begin, std::int64_t end) {
                     ExrChunks& range = ranges[begin / kTilesPerRange];
                     TileWriter writer(level, number, options);

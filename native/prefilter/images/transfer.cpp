@@ -16,7 +16,7 @@ template <typename Curve>
 Image map_colors(const ImageView& image, int threads, const Curve& curve) {
   Image result(image);
   const int colors = std::min(image.channels, 3);
-  parallel_for(image.height, threads, Progress(), [&](std::int64_t y) {
+  parallel_for(image.height, Run(threads), [&](std::int64_t y) {
     float* texel = result.texel(0, static_cast<int>(y));
     for (int x = 0; x < image.width; ++x, texel += image.channels) {
       for (int c = 0; c < colors; ++c) texel[c] = curve(texel[c]);
@@ -66,7 +66,7 @@ std::vector<std::uint8_t> to_bytes(const ImageView& image, bool srgb, int thread
   const std::size_t row_values = image.value_count() / static_cast<std::size_t>(image.height);
   const int colors = srgb ? std::min(image.channels, 3) : 0;
   const SrgbByteEncoder& encoded = SrgbByteEncoder::instance();
-  parallel_for(image.height, threads, Progress(), [&](std::int64_t y) {
+  parallel_for(image.height, Run(threads), [&](std::int64_t y) {
     const float* value = image.texel(0, static_cast<int>(y));
     std::uint8_t* byte = bytes.data() + static_cast<std::size_t>(y) * row_values;
     const auto nearest = [](float v) {

@@ -66,7 +66,7 @@ class PlyMeshWriter::Files {
   void add_triangles(std::span<const std::array<std::int64_t, 3>> triangles);
   std::size_t vertex_count() const { return vertex_count_; }
   std::size_t triangle_count() const { return triangle_count_; }
-  void finish(const Progress& progress);
+  void finish(const Run& run);
 
  private:
   std::string header(std::size_t size) const;
@@ -167,12 +167,12 @@ void PlyMeshWriter::Files::write_triangles() {
   triangle_buffer_.clear();
 }
 
-void PlyMeshWriter::Files::finish(const Progress& progress) {
+void PlyMeshWriter::Files::finish(const Run& run) {
   write_vertices();
   write_triangles();
   std::vector<std::byte> block(kBufferSize);
   for (std::uint64_t done = 0; done < triangles_.size();) {
-    progress.report(static_cast<double>(done) / static_cast<double>(triangles_.size()));
+    run.report(static_cast<double>(done) / static_cast<double>(triangles_.size()));
     const std::uint64_t left = triangles_.size() - done;
     const auto some = std::span(block).first(
         static_cast<std::size_t>(std::min<std::uint64_t>(left, kBufferSize)));
@@ -181,7 +181,7 @@ void PlyMeshWriter::Files::finish(const Progress& progress) {
     done += some.size();
   }
   staged_.file().write_at(0, bytes_of(header(header_size_)));
-  progress.report(1.0);
+  run.report(1.0);
   staged_.commit();
 }
 
@@ -202,6 +202,6 @@ void PlyMeshWriter::add_triangles(std::vector<std::array<std::int64_t, 3>> trian
 std::size_t PlyMeshWriter::vertex_count() const { return files_->vertex_count(); }
 std::size_t PlyMeshWriter::triangle_count() const { return files_->triangle_count(); }
 
-void PlyMeshWriter::finish(const Progress& progress) { files_->finish(progress); }
+void PlyMeshWriter::finish(const Run& run) { files_->finish(run); }
 
 }  // namespace prefilter

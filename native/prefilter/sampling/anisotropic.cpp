@@ -130,14 +130,14 @@ void sample_anisotropically(const Pyramid& pyramid, const SamplingTable* table,
                              pyramid.channels,
                              options.max_probes};
   constexpr std::int64_t kSamplesAtOnce = 1 << 10;
-  parallel_ranges(static_cast<std::int64_t>(coordinates.size()), kSamplesAtOnce, options.threads,
-                  options.progress, [&](std::int64_t begin, std::int64_t end) {
+  parallel_ranges(static_cast<std::int64_t>(coordinates.size()), kSamplesAtOnce, options.run,
+                  [&](std::int64_t begin, std::int64_t end) {
                     const auto count = static_cast<std::size_t>(end - begin);
                     probed.sample(coordinates.subspan(begin, count),
                                   jacobians.subspan(begin, count),
                                   result.data() + begin * pyramid.channels);
                   });
-  options.progress.report(1.0);
+  options.run.report(1.0);
 }
 
 }  // namespace prefilter

@@ -95,7 +95,7 @@ void add_row(const ImageView& image, const Gaussian& gaussian, WrapModes wrap, i
 // tasks whose sums are added in order.
 void add_samples(const ImageView& image, std::span<const TexturePlace> coordinates,
                  std::span<const TextureJacobian> jacobians, const EllipticalOptions& options,
-                 const Progress& progress, float* values) {
+                 const Run& run, float* values) {
   constexpr std::size_t kTexelsPerBand = 1 << 17;
   constexpr std::size_t kTexelsPerTask = 1 << 16;
   const auto longest = static_cast<unsigned>(std::max(image.width, image.height));
@@ -106,20 +106,19 @@ void add_samples(const ImageView& image, std::span<const TexturePlace> coordinat
   const auto at_once = static_cast<std::int64_t>(
       std::clamp<std::size_t>(kTexelsPerTask / image.texel_count(), 1, 64));
   std::vector<double> sums(static_cast<std::size_t>(items) * (channels + 1));
-  parallel_ranges(
-      items, at_once, options.threads, progress, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t item = begin; item < end; ++item) {
-          const auto sample = static_cast<std::size_t>(item / bands);
-          const Gaussian gaussian(image, coordinates[sample],
-                                  footprint_of(jacobians[sample], last_level), options.wrap);
-          const std::int64_t rows = gaussian.end_row() - gaussian.first_row();
-          const std::int64_t band = item % bands;
-          for (std::int64_t row = rows * band / bands; row < rows * (band + 1) / bands; ++row) {
-            add_row(image, gaussian, options.wrap, gaussian.first_row() + static_cast<int>(row),
-                    sums.data() + static_cast<std::size_t>(item) * (channels + 1));
-          }
-        }
-      });
+  parallel_ranges(items, at_once, run, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t item = begin; item < end; ++item) {
+      const auto sample = static_cast<std::size_t>(item / bands);
+      const Gaussian gaussian(image, coordinates[sample],
+                              footprint_of(jacobians[sample], last_level), options.wrap);
+      const std::int64_t rows = gaussian.end_row() - gaussian.first_row();
+      const std::int64_t band = item % bands;
+      for (std::int64_t row = rows * band / bands; row < rows * (band + 1) / bands; ++row) {
+        add_row(image, gaussian, options.wrap, gaussian.first_row() + static_cast<int>(row),
+                sums.data() + static_cast<std::size_t>(item) * (channels + 1));
+      }
+    }
+  });
   std::vector<double> total(channels + 1);
   const double* sum = sums.data();
   for (std::size_t sample = 0; sample < coordinates.size(); ++sample) {
@@ -151,10 +150,10 @@ std::vector<float> sample_elliptically(const ImageView& image,
       return static_cast<double>(samples) / static_cast<double>(count);
     };
     add_samples(image, coordinates.subspan(begin, size), jacobians.subspan(begin, size), options,
-                options.progress.part(fraction_of(begin), fraction_of(begin + size)),
+                options.run.part(fraction_of(begin), fraction_of(begin + size)),
                 values.data() + begin * channels);
   }
-  options.progress.report(1.0);
+  options.run.report(1.0);
   return values;
 }
 

@@ -83,14 +83,14 @@ std::vector<float> sample_exactly(const ImageView& image, const SamplePlaces& pl
   constexpr std::size_t kExactTexelsPerTask = 1 << 22;
   const auto at_once = static_cast<std::int64_t>(
       std::clamp<std::size_t>(kExactTexelsPerTask / image.texel_count(), 1, 64));
-  parallel_ranges(static_cast<std::int64_t>(count), at_once, options.threads, options.progress,
+  parallel_ranges(static_cast<std::int64_t>(count), at_once, options.run,
                   [&](std::int64_t begin, std::int64_t end) {
                     for (auto i = static_cast<std::size_t>(begin); std::cmp_less(i, end); ++i) {
                       sample_exactly(image, *options.kernel, options.wrap, places.coordinates[i],
                                      places.scale(i), values.data() + i * channels);
                     }
                   });
-  options.progress.report(1.0);
+  options.run.report(1.0);
   return values;
 }
 

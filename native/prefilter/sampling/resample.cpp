@@ -63,15 +63,14 @@ void check_arguments(const ImageView& image, const Homography& transform, int wi
 // Samples an image at arbitrary positions and shapes, in batches.
 class ImageSampler {
  public:
-  ImageSampler(const ImageView& image, const ResampleOptions& options, const Progress& progress)
+  ImageSampler(const ImageView& image, const ResampleOptions& options, const Run& run)
       : image_(image), options_(options) {
     if (options.method == Method::kExact) return;
     SamplingLevelsOptions level_options;
     level_options.kernel = options.kernel;
     level_options.wrap = options.wrap;
     level_options.premultiplied = true;
-    level_options.threads = options.threads;
-    level_options.progress = progress;
+    level_options.run = run;
     levels_ = sampling_levels(image, level_options);
     std::vector<PyramidLevel> views;
     for (const Image& level : levels_) {
@@ -98,12 +97,10 @@ class ImageSampler {
 
   // Reports progress only if is_elliptical().
   void operator()(std::span<const TexturePlace> coordinates,
-                  std::span<const TextureJacobian> jacobians, const Progress& progress,
-                  float* values) const {
+                  std::span<const TextureJacobian> jacobians, const Run& run, float* values) const {
     if (is_elliptical()) {
-      const std::vector<float> found = sample_elliptically(
-          image_, coordinates, jacobians,
-          {.wrap = options_.wrap, .threads = options_.threads, .progress = progress});
+      const std::vector<float> found =
+          sample_elliptically(image_, coordinates, jacobians, {.wrap = options_.wrap, .run = run});
       std::copy(found.begin(), found.end(), values);
     } else if (options_.method == Method::kExact) {
       for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -142,7 +139,7 @@ class ImageSampler {
 // Resamples pixels [begin, end), in row-major order. Pixels beyond the horizon are left unchanged.
 void resample_pixels(const ImageSampler& sampler, const ImageView& image,
                      const Homography& transform, std::int64_t begin, std::int64_t end,
-                     const Progress& progress, Image* result) {
+                     const Run& run, Image* result) {
   std::vector<TexturePlace> coordinates;
   std::vector<TextureJacobian> jacobians;
   std::vector<std::int64_t> pixels;
@@ -157,7 +154,7 @@ void resample_pixels(const ImageSampler& sampler, const ImageView& image,
   }
   const auto channels = static_cast<std::size_t>(image.channels);
   std::vector<float> values(pixels.size() * channels);
-  sampler(coordinates, jacobians, progress, values.data());
+  sampler(coordinates, jacobians, run, values.data());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     std::copy_n(values.data() + i * channels, channels,
                 result->data.data() + static_cast<std::size_t>(pixels[i]) * channels);
@@ -166,7 +163,7 @@ void resample_pixels(const ImageSampler& sampler, const ImageView& image,
 
 void clear_beyond_horizon(const ImageView& image, const Homography& transform, int threads,
                           Image* result) {
-  parallel_for(result->height, threads, Progress(), [&](std::int64_t row) {
+  parallel_for(result->height, Run(threads), [&](std::int64_t row) {
     for (int column = 0; column < result->width; ++column) {
       const int y = static_cast<int>(row);
       if (pixel_place(transform, column, y, image.width, image.height).is_visible) continue;
@@ -203,18 +200,18 @@ Image resample(const ImageView& image, const Homography& transform, int width, i
   check_arguments(image, transform, width, height, options);
   const bool has_alpha = !options.premultiplied && (image.channels == 2 || image.channels == 4);
   const TexelSource source(image);
+  const Stages stages(options.run, {1, 4, 13, 2});
   const FilteredImage filtered(
       source, [&] { return std::vector<unsigned char>(image.texel_count(), 1); },
       {.alpha = has_alpha ? std::optional<int>(image.channels - 1) : std::nullopt,
        .stays_opaque = !has_border(options.wrap),
-       .threads = options.threads,
-       .progress = options.progress.part(0.0, 0.05)});
-  const ImageSampler sampler(filtered.floats(), options, options.progress.part(0.05, 0.25));
+       .run = stages[0]});
+  const ImageSampler sampler(filtered.floats(), options, stages[1]);
   Image result(width, height, image.channels);
   const std::int64_t pixels = static_cast<std::int64_t>(width) * height;
-  const Progress sampling = options.progress.part(0.25, 0.9);
-  const auto resample_range = [&](std::int64_t begin, std::int64_t end, const Progress& progress) {
-    resample_pixels(sampler, filtered.floats(), transform, begin, end, progress, &result);
+  const Run sampling = stages[2];
+  const auto resample_range = [&](std::int64_t begin, std::int64_t end, const Run& run) {
+    resample_pixels(sampler, filtered.floats(), transform, begin, end, run, &result);
   };
   if (sampler.is_elliptical()) {
     const auto fraction_of = [&](std::int64_t pixel) {
@@ -225,16 +222,15 @@ Image resample(const ImageView& image, const Homography& transform, int width, i
       resample_range(begin, end, sampling.part(fraction_of(begin), fraction_of(end)));
     }
   } else {
-    parallel_ranges(
-        pixels, sampler.batch(), options.threads, sampling,
-        [&](std::int64_t begin, std::int64_t end) { resample_range(begin, end, Progress()); });
+    parallel_ranges(pixels, sampler.batch(), sampling, [&](std::int64_t begin, std::int64_t end) {
+      resample_range(begin, end, Run());
+    });
   }
   if (filtered.is_multiplied()) {
-    filtered.divide_by_alpha(WrapModes(), options.progress.part(0.9, 1.0), options.threads,
-                             &result);
-    clear_beyond_horizon(image, transform, options.threads, &result);
+    filtered.divide_by_alpha(WrapModes(), stages[3], &result);
+    clear_beyond_horizon(image, transform, options.run.threads(), &result);
   }
-  options.progress.report(1.0);
+  options.run.report(1.0);
   return result;
 }
 

@@ -30,8 +30,8 @@ void sample(const Pyramid& pyramid, const SamplingTable* table,
   }
   const bool is_constant = scales.size() == 1;
   if (is_constant) check_scales(scales);
-  parallel_ranges(static_cast<std::int64_t>(coordinates.size()), kSamplesOfRange, options.threads,
-                  options.progress, [&](std::int64_t begin, std::int64_t end) {
+  parallel_ranges(static_cast<std::int64_t>(coordinates.size()), kSamplesOfRange, options.run,
+                  [&](std::int64_t begin, std::int64_t end) {
                     const auto count = static_cast<std::size_t>(end - begin);
                     check_coordinates(coordinates.subspan(begin, count), begin);
                     if (!is_constant) check_scales(scales.subspan(begin, count), begin);

@@ -70,17 +70,16 @@ std::vector<Image> sampling_levels(const ImageView& image, const SamplingLevelsO
   const FilteredImage filtered(
       source, [&] { return std::vector<unsigned char>(image.texel_count(), 1); },
       {.alpha = has_alpha ? std::optional<int>(image.channels - 1) : std::nullopt,
-       .threads = options.threads,
-       .progress = options.progress.part(0.0, 0.1)});
+       .run = options.run.part(0.0, 0.1)});
   std::vector<Image> levels;
   for (int level = 0; level < count; ++level) {
     const auto done = [&](int number) { return 0.1 + 0.9 * number / count; };
     levels.push_back(
         filter_separably(filtered.floats(), level_taps(*options.kernel, image.width, level),
                          level_taps(*options.kernel, image.height, level), options.wrap,
-                         options.progress.part(done(level), done(level + 1)), options.threads));
+                         options.run.part(done(level), done(level + 1))));
   }
-  options.progress.report(1.0);
+  options.run.report(1.0);
   return levels;
 }
 

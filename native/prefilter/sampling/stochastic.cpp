@@ -89,7 +89,7 @@ std::vector<WeightedTexel> pick_texels(const Pyramid& pyramid, const TexelChoice
   std::vector<WeightedTexel> picked(numbers.size());
   constexpr std::int64_t kSamplesAtOnce = 1 << 12;
   parallel_ranges(
-      static_cast<std::int64_t>(numbers.size()), kSamplesAtOnce, options.threads, options.progress,
+      static_cast<std::int64_t>(numbers.size()), kSamplesAtOnce, options.run,
       [&](std::int64_t begin, std::int64_t end) {
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
           const TexturePlace& place = places.coordinates[i];

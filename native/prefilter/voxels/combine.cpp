@@ -153,8 +153,7 @@ void append(Levels* levels, Levels* from) {
 }
 
 // Combines trees with the same root whose surfaces lie in cells of one size.
-CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operation,
-                     const Progress& progress, int threads) {
+CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operation, const Run& run) {
   const Merger merger(operation);
   const auto depth = static_cast<std::size_t>(std::max(a.depth(), b.depth()));
   Levels levels(depth);
@@ -177,14 +176,15 @@ CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operatio
   const Cell root_b = Cell::root_of(b);
   find(find, root_a, root_b, 0);
 
-  const Progress merging = progress.part(0.0, 0.8);
-  parallel_for(static_cast<std::int64_t>(tasks.size()), threads, merging, [&](std::int64_t i) {
+  const Stages stages(run, {8, 1, 1});
+  const Run merging = stages[0];
+  parallel_for(static_cast<std::int64_t>(tasks.size()), merging, [&](std::int64_t i) {
     Task& task = tasks[static_cast<std::size_t>(i)];
     task.levels.resize(depth);
     task.merged = merger.merge(task.a, task.b, kTaskDepth, &task.levels);
   });
 
-  const Progress gathering = progress.part(0.8, 0.9);
+  const Run gathering = stages[1];
   std::size_t next_task = 0;
   const auto gather = [&](const auto& self, const Cell& of_a, const Cell& of_b,
                           int at) -> MergedCell {
@@ -203,7 +203,7 @@ CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operatio
   while (!levels.empty() && levels.back().size() == 0) levels.pop_back();
   tree.levels = std::move(levels);
   for (TreeLevel& level : tree.levels) link_blocks(&level);
-  update_means(&tree, progress.part(0.9, 1.0), threads);
+  update_means(&tree, stages[2]);
   // All cells are empty, or all are full.
   if (!is_fraction(tree.root)) tree.levels.clear();
   return tree;
@@ -211,19 +211,20 @@ CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operatio
 
 // Refines both trees first: contours of surfaces in cells of different sizes could self-intersect.
 CellTree combine_trees(const CellTree& a, const CellTree& b, SetOperation operation,
-                       const Progress& progress, int threads) {
+                       const Run& run) {
   const int depth = std::max(a.depth(), b.depth());
   CellTree fine_a;
   CellTree fine_b;
-  const auto fine = [&](const CellTree& tree, const Progress& part,
+  const auto fine = [&](const CellTree& tree, const Run& part,
                         CellTree* result) -> const CellTree& {
     if (tree.depth() == depth && !has_coarse_surface(tree)) return tree;
-    *result = refined(tree, depth, part, threads);
+    *result = refined(tree, depth, part);
     return *result;
   };
-  const CellTree& first = fine(a, progress.part(0.0, 0.3), &fine_a);
-  const CellTree& second = fine(b, progress.part(0.3, 0.6), &fine_b);
-  return merge_trees(first, second, operation, progress.part(0.6, 1.0), threads);
+  const Stages stages(run, {3, 3, 4});
+  const CellTree& first = fine(a, stages[0], &fine_a);
+  const CellTree& second = fine(b, stages[1], &fine_b);
+  return merge_trees(first, second, operation, stages[2]);
 }
 
 bool same_box(const Box& a, const Box& b) {
@@ -240,7 +241,7 @@ bool same_box(const Box& a, const Box& b) {
 CellTree united_thickened(const Octree& a, const Octree& b, int threads) {
   if (a.thickened.levels.empty()) return b.thickened;
   if (b.thickened.levels.empty()) return a.thickened;
-  return merge_trees(a.thickened, b.thickened, SetOperation::kUnion, Progress(), threads);
+  return merge_trees(a.thickened, b.thickened, SetOperation::kUnion, Run(threads));
 }
 
 // The first depth at which cells of the root are no larger, along any axis, than the octree's
@@ -255,15 +256,14 @@ int matching_depth(const Box& root, const Octree& octree) {
 }
 }  // namespace
 
-Octree combine(const Octree& a, const Octree& b, SetOperation operation, const Progress& progress,
-               int threads) {
+Octree combine(const Octree& a, const Octree& b, SetOperation operation, const Run& run) {
   Octree result;
   if (same_box(a.bounds, b.bounds)) {
     result.bounds = a.bounds;
     result.depth = std::max(a.depth, b.depth);
-    result.cells = combine_trees(a.cells, b.cells, operation, progress, threads);
-    result.thickened = united_thickened(a, b, threads);
-    progress.report(1.0);
+    result.cells = combine_trees(a.cells, b.cells, operation, run);
+    result.thickened = united_thickened(a, b, run.threads());
+    run.report(1.0);
     return result;
   }
   std::optional<Octree> larger;
@@ -273,12 +273,12 @@ Octree combine(const Octree& a, const Octree& b, SetOperation operation, const P
   }
   const Octree& first = larger ? *larger : a;
   const int depth = std::max(matching_depth(first.bounds, b), first.cells.depth());
-  const Octree second = regridded(b, first.bounds, depth, progress.part(0.0, 0.7), threads);
+  const Stages stages(run, {7, 3});
+  const Octree second = regridded(b, first.bounds, depth, stages[0]);
   result.bounds = first.bounds;
   result.depth = std::max(first.depth, depth);
-  result.cells =
-      combine_trees(first.cells, second.cells, operation, progress.part(0.7, 1.0), threads);
-  progress.report(1.0);
+  result.cells = combine_trees(first.cells, second.cells, operation, stages[1]);
+  run.report(1.0);
   return result;
 }
 

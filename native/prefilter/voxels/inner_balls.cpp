@@ -31,12 +31,12 @@ Vector3 just_outside(const Vector3& point, const Vector3& normal) {
 }  // namespace
 
 InnerBalls::InnerBalls(const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals,
-                       const std::vector<std::uint32_t>& triangles, const Progress& progress,
-                       int threads)
+                       const std::vector<std::uint32_t>& triangles, const Run& run)
     : mesh_(mesh), normals_(normals) {
+  const Stages stages(run, {7, 3});
   const std::vector<CurvePlace> places = along_curve(
       triangles.size(), [&](std::size_t i) { return triangle_middle(mesh.corners(triangles[i])); },
-      progress.part(0.0, 0.7), threads);
+      stages[0]);
   std::vector<std::uint64_t> keys;
   for (const CurvePlace& place : places) {
     keys.push_back(place.key);
@@ -44,7 +44,7 @@ InnerBalls::InnerBalls(const MeshView<std::int32_t>& mesh, std::span<const Vecto
   }
   tree_ = BoxTree(
       keys, kLeafItems, [&](std::size_t i) { return triangle_box(mesh.corners(triangles_[i])); },
-      progress.part(0.7, 1.0));
+      stages[1]);
   const std::span<const BoxTree::Node> nodes = tree_.nodes();
   directions_.resize(nodes.size(), 0);
   for (std::size_t node = nodes.size(); node-- > 0;) {

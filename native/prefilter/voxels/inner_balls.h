@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/geometry/spatial/box_tree.h"
 
 namespace prefilter {
@@ -31,7 +31,7 @@ class InnerBalls {
  public:
   /// Keeps a reference to the mesh. Throws Error(kCancelled).
   InnerBalls(const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals,
-             const std::vector<std::uint32_t>& triangles, const Progress& progress, int threads);
+             const std::vector<std::uint32_t>& triangles, const Run& run);
 
   /// The triangles opposite to a piece of a triangle, within reach of a ball at the piece.
   struct Across {

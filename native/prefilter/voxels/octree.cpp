@@ -71,7 +71,7 @@ Octree make_octree(std::vector<TreeLevel> levels, float root, const Box& bounds,
   check_levels(levels, root, depth);
   Octree octree{{root, std::move(levels)}, bounds, depth, {}};
   for (TreeLevel& level : octree.cells.levels) link_blocks(&level);
-  update_means(&octree.cells, Progress(), 1);
+  update_means(&octree.cells, Run(1));
   return octree;
 }
 

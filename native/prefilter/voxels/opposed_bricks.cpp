@@ -145,7 +145,7 @@ void merge(std::vector<Entry>* entries) {
 // Entries of all bricks, sorted.
 std::vector<Entry> directions_of(const MeshView<std::int32_t>& mesh,
                                  std::span<const Vector3> normals, double side, const Box& bounds,
-                                 const Progress& progress, int threads) {
+                                 const Run& run) {
   const auto rows = static_cast<std::int64_t>(mesh.triangles.size());
   std::vector<std::vector<Entry>> tasks(static_cast<std::size_t>(range_count(rows, kRowsPerTask)));
   const auto find = [&](std::int64_t begin, std::int64_t end) {
@@ -161,7 +161,7 @@ std::vector<Entry> directions_of(const MeshView<std::int32_t>& mesh,
     merge(entries.all());
     tasks[static_cast<std::size_t>(begin / kRowsPerTask)] = std::move(*entries.all());
   };
-  parallel_ranges(rows, kRowsPerTask, threads, progress, find);
+  parallel_ranges(rows, kRowsPerTask, run, find);
   std::vector<Entry> directions;
   for (std::vector<Entry>& entries : tasks) {
     directions.insert(directions.end(), entries.begin(), entries.end());
@@ -201,10 +201,10 @@ std::uint64_t bits_across(const Vector3& direction) {
 }
 
 OpposedBricks::OpposedBricks(const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals,
-                             double side, const Box& bounds, const Progress& progress, int threads)
+                             double side, const Box& bounds, const Run& run)
     : side_(side), bounds_(bounds) {
   const std::vector<Entry> directions =
-      directions_of(mesh, normals, side, bounds, progress.part(0.0, 0.7), threads);
+      directions_of(mesh, normals, side, bounds, run.part(0.0, 0.7));
   const std::vector<std::uint64_t> around = directions_around(directions);
   const std::array<std::uint64_t, kBins>& across = across_table();
   for (std::size_t i = 0; i < directions.size(); ++i) {
@@ -214,7 +214,7 @@ OpposedBricks::OpposedBricks(const MeshView<std::int32_t>& mesh, std::span<const
       break;
     }
   }
-  progress.report(1.0);
+  run.report(1.0);
 }
 
 bool OpposedBricks::holds(const Vector3& point) const {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/cube_table.h"
 
 namespace prefilter {
@@ -28,7 +28,7 @@ class OpposedBricks {
  public:
   /// Bricks have side `side`; only those that overlap `bounds` are kept. Throws Error(kCancelled).
   OpposedBricks(const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals, double side,
-                const Box& bounds, const Progress& progress, int threads);
+                const Box& bounds, const Run& run);
 
   bool is_empty() const { return opposed_.is_empty(); }
   bool holds(const Vector3& point) const;

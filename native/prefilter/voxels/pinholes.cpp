@@ -31,15 +31,14 @@ bool is_pinhole(const CellTree& cells, int depth, const LeafPlace& at) {
 
 }  // namespace
 
-void fill_pinholes(const CellTree& thickened, int depth, const Progress& progress, int threads,
-                   CellTree* cells) {
+void fill_pinholes(const CellTree& thickened, int depth, const Run& run, CellTree* cells) {
   if (thickened.depth() != depth || cells->depth() != depth || depth == 0) return;
   std::vector<LeafPlace> holes;
   for_finest(thickened, [&](const LeafPlace& at, float) {
     if (is_pinhole(*cells, depth, at)) holes.push_back(at);
   });
   for (const LeafPlace& at : holes) set_leaf(at, depth, kFilledOccupancy, cells);
-  if (!holes.empty()) update_means(cells, progress, threads);
+  if (!holes.empty()) update_means(cells, run);
 }
 
 }  // namespace prefilter

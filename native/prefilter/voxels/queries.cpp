@@ -58,7 +58,7 @@ double integral(const CellTree& tree, std::size_t level, std::size_t block, cons
 template <typename T, typename ValueOf>
 std::vector<T> for_points(std::span<const Vector3> points, int threads, const ValueOf& value_of) {
   std::vector<T> values(points.size());
-  parallel_ranges(static_cast<std::int64_t>(points.size()), kPointsPerTask, threads, Progress(),
+  parallel_ranges(static_cast<std::int64_t>(points.size()), kPointsPerTask, Run(threads),
                   [&](std::int64_t begin, std::int64_t end) {
                     std::transform(points.begin() + begin, points.begin() + end,
                                    values.begin() + begin, value_of);
@@ -184,8 +184,7 @@ std::vector<std::int8_t> classify(const Octree& octree, std::span<const Vector3>
   });
 }
 
-std::vector<float> dense_values(const Octree& octree, int depth, const Progress& progress,
-                                int threads) {
+std::vector<float> dense_values(const Octree& octree, int depth, const Run& run) {
   check_depth(depth, 0, "depth");
   const double count = std::ldexp(1.0, 3 * depth);
   check_memory("depth: a grid of " + std::to_string(1 << depth) + "^3 cells", 4.0 * count);
@@ -198,7 +197,7 @@ std::vector<float> dense_values(const Octree& octree, int depth, const Progress&
   }
   // One task per cell of the second level.
   const TreeLevel& top = tree.levels.front();
-  parallel_for(64, threads, progress, [&](std::int64_t task) {
+  parallel_for(64, run, [&](std::int64_t task) {
     const int o = static_cast<int>(task) / 8;
     const auto inner = static_cast<int>(task) % 8;
     const std::array<std::size_t, 3> octant = {static_cast<std::size_t>(o & 1),

@@ -47,8 +47,7 @@ bool is_within(const Box& a, const Box& b) {
 // The surfaces in the leaves of a tree.
 class LeafSurfaces {
  public:
-  LeafSurfaces(const CellTree& tree, const Progress& progress, int threads)
-      : firsts_(tree.levels.size()) {
+  LeafSurfaces(const CellTree& tree, const Run& run) : firsts_(tree.levels.size()) {
     std::vector<std::vector<LeafPlace>> places(tree.levels.size());
     std::size_t count = 0;
     for (std::size_t k = 0; k < tree.levels.size(); ++k) {
@@ -72,7 +71,7 @@ class LeafSurfaces {
     for (std::size_t k = 0; k < tree.levels.size(); ++k) {
       const TreeLevel& level = tree.levels[k];
       const auto step = static_cast<double>(k);
-      for_blocks(level, threads, progress.part(step / steps, (step + 1.0) / steps),
+      for_blocks(level, run.part(step / steps, (step + 1.0) / steps),
                  [&](std::size_t begin, std::size_t end) {
                    for (std::size_t b = begin; b < end; ++b) {
                      std::size_t next = firsts_[k][b];
@@ -272,14 +271,14 @@ void add_occupied(const CellTree& tree, std::size_t level, std::size_t block, co
 }
 }  // namespace
 
-Octree regridded(const Octree& octree, const Box& bounds, int depth, const Progress& progress,
-                 int threads) {
-  const LeafSurfaces surfaces(octree.cells, progress.part(0.0, 0.2), threads);
+Octree regridded(const Octree& octree, const Box& bounds, int depth, const Run& run) {
+  const Stages stages(run, {1, 4});
+  const LeafSurfaces surfaces(octree.cells, stages[0]);
   const RegridRule rule(octree, depth, surfaces);
   Octree result;
   result.bounds = bounds;
   result.depth = depth;
-  result.cells = build_tree(rule.root(bounds), depth, rule, progress.part(0.2, 1.0), threads);
+  result.cells = build_tree(rule.root(bounds), depth, rule, stages[1]);
   return result;
 }
 

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/octree.h"
 
 namespace prefilter {
@@ -14,8 +14,7 @@ namespace prefilter {
 /// the source or unions of them; otherwise computed from the leaves' surfaces (LeafSurface).
 /// Preconditions: bounds that check_box accepts, and a depth from 0 to kMaxTreeDepth. Throws
 /// Error(kCancelled).
-Octree regridded(const Octree& octree, const Box& bounds, int depth, const Progress& progress,
-                 int threads);
+Octree regridded(const Octree& octree, const Box& bounds, int depth, const Run& run);
 
 /// Whether a box lies within bounds, up to rounding.
 bool holds(const Box& bounds, const Box& box);

@@ -219,7 +219,7 @@ struct Neck {
 }  // namespace
 
 void open_slits(const WindingNumbers& winding, double unit, const CellTree& thickened, int depth,
-                const Progress& progress, int threads, CellTree* cells) {
+                const Run& run, CellTree* cells) {
   if (cells->depth() != depth || depth == 0) return;
   std::vector<Neck> necks;
   for_finest(*cells, [&](const LeafPlace& at, float value) {
@@ -228,8 +228,9 @@ void open_slits(const WindingNumbers& winding, double unit, const CellTree& thic
     if (joined_by_center(block_at(*cells, depth, at))) necks.push_back({at, value});
   });
   const Separation separation(winding, unit);
-  parallel_ranges(static_cast<std::int64_t>(necks.size()), kNecksPerTask, threads,
-                  progress.part(0.0, 0.9), [&](std::int64_t begin, std::int64_t end) {
+  const Stages stages(run, {9, 1});
+  parallel_ranges(static_cast<std::int64_t>(necks.size()), kNecksPerTask, stages[0],
+                  [&](std::int64_t begin, std::int64_t end) {
                     for (auto i = static_cast<std::size_t>(begin);
                          i < static_cast<std::size_t>(end); ++i) {
                       const auto full = joined_by_center(block_at(*cells, depth, necks[i].at));
@@ -244,7 +245,7 @@ void open_slits(const WindingNumbers& winding, double unit, const CellTree& thic
       set_leaf(neck.at, depth, kOpenedOccupancy, cells);
     }
   }
-  if (!necks.empty()) update_means(cells, progress.part(0.9, 1.0), threads);
+  if (!necks.empty()) update_means(cells, stages[1]);
 }
 
 }  // namespace prefilter

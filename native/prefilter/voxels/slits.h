@@ -3,7 +3,7 @@
 // Opens slits of a solid that cells bridge.
 #pragma once
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/geometry/spatial/winding_numbers.h"
 #include "prefilter/wavelet/cell_tree.h"
 
@@ -14,6 +14,6 @@ namespace prefilter {
 /// rows of holes. `winding` holds the mesh's winding numbers, in units of `unit` cells. Thickened
 /// cells are kept. Throws Error(kCancelled).
 void open_slits(const WindingNumbers& winding, double unit, const CellTree& thickened, int depth,
-                const Progress& progress, int threads, CellTree* cells);
+                const Run& run, CellTree* cells);
 
 }  // namespace prefilter

@@ -246,7 +246,7 @@ double thickness_unit(double thickness) { return std::max(1.0, thickness / kUsua
 
 // Pieces to add to the octree, in cells of its depth.
 ThickPieces pieces_for(const RootTriangles& mesh, double thickness, const Octree& octree,
-                       const Progress& progress, int threads) {
+                       const Run& run) {
   const double unit = thickness_unit(thickness);
   const double count = std::ldexp(1.0, octree.depth) / unit;
   const TriangleMesh scaled = in_units(mesh, count);
@@ -259,8 +259,8 @@ ThickPieces pieces_for(const RootTriangles& mesh, double thickness, const Octree
   };
   const Box bounds = {{-kMargin, -kMargin, -kMargin},
                       {count + kMargin, count + kMargin, count + kMargin}};
-  ThickPieces found = thick_pieces({scaled.positions, scaled.triangles}, thickness / unit, bounds,
-                                   occupancy, progress, threads);
+  ThickPieces found =
+      thick_pieces({scaled.positions, scaled.triangles}, thickness / unit, bounds, occupancy, run);
   for (ThickPiece& piece : found.pieces) {
     for (Vector3& middle : piece.middles) middle = unit * middle;
     piece.radius *= unit;
@@ -323,30 +323,30 @@ std::vector<ThinTriangle> thin_triangles(const ThickPieces& found, bool only_wal
 
 }  // namespace
 
-void thicken(const RootTriangles& mesh, double thickness, const Progress& progress, int threads,
-             Octree* octree) {
-  const ThickPieces found = pieces_for(mesh, thickness, *octree, progress.part(0.0, 0.6), threads);
+void thicken(const RootTriangles& mesh, double thickness, const Run& run, Octree* octree) {
+  const Stages stages(run, {60, 30, 7, 1, 2});
+  const ThickPieces found = pieces_for(mesh, thickness, *octree, stages[0]);
   CellTree thickened;
   if (!found.pieces.empty()) {
     const PieceRule rule(found.pieces, *octree);
     Octree added;
     added.bounds = octree->bounds;
     added.depth = octree->depth;
-    added.cells = build_tree(rule.root(), octree->depth, rule, progress.part(0.6, 0.9), threads);
-    *octree = combine(*octree, added, SetOperation::kUnion, progress.part(0.9, 0.97), threads);
+    added.cells = build_tree(rule.root(), octree->depth, rule, stages[1]);
+    *octree = combine(*octree, added, SetOperation::kUnion, stages[2]);
     thickened = std::move(added.cells);
-    fill_pinholes(thickened, octree->depth, progress.part(0.97, 0.98), threads, &octree->cells);
+    fill_pinholes(thickened, octree->depth, stages[3], &octree->cells);
   }
   if (found.winding) {
-    open_slits(*found.winding, thickness_unit(thickness), thickened, octree->depth,
-               progress.part(0.98, 1.0), threads, &octree->cells);
+    open_slits(*found.winding, thickness_unit(thickness), thickened, octree->depth, stages[4],
+               &octree->cells);
   }
   if (!found.pieces.empty()) {
     octree->thickened = std::move(thickened);
     octree->thin = thin_triangles(found, false, 0.0);
     octree->thin_walls = thin_triangles(found, true, kThinnestOfWalls);
   }
-  progress.report(1.0);
+  run.report(1.0);
 }
 
 }  // namespace prefilter

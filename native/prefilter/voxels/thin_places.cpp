@@ -271,20 +271,19 @@ std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
                                        std::span<const Vector3> normals,
                                        const Representatives& chosen, const OpposedBricks& bricks,
                                        const InnerBalls& balls, const OuterSides& outer,
-                                       double largest, const Progress& progress, int threads) {
+                                       double largest, const Run& run) {
   const auto rows = static_cast<std::int64_t>(chosen.triangles.size());
   std::vector<std::vector<Candidate>> tasks(
       static_cast<std::size_t>(range_count(rows, kTrianglesPerTask)));
-  parallel_ranges(
-      rows, kTrianglesPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
-        CandidateFinder finder(bricks, balls, outer, largest,
-                               &tasks[static_cast<std::size_t>(begin / kTrianglesPerTask)]);
-        for (std::int64_t i = begin; i < end; ++i) {
-          const std::uint32_t t = chosen.triangles[static_cast<std::size_t>(i)];
-          finder.add(chosen.corners(mesh, static_cast<std::size_t>(i)), normals[t], chosen,
-                     static_cast<std::size_t>(i));
-        }
-      });
+  parallel_ranges(rows, kTrianglesPerTask, run, [&](std::int64_t begin, std::int64_t end) {
+    CandidateFinder finder(bricks, balls, outer, largest,
+                           &tasks[static_cast<std::size_t>(begin / kTrianglesPerTask)]);
+    for (std::int64_t i = begin; i < end; ++i) {
+      const std::uint32_t t = chosen.triangles[static_cast<std::size_t>(i)];
+      finder.add(chosen.corners(mesh, static_cast<std::size_t>(i)), normals[t], chosen,
+                 static_cast<std::size_t>(i));
+    }
+  });
   std::vector<Candidate> all;
   for (const std::vector<Candidate>& found : tasks)
     all.insert(all.end(), found.begin(), found.end());
@@ -313,13 +312,12 @@ PlaceSums place_around(const CubeTable<PlaceSums>& places, const Vector3& middle
 }  // namespace
 
 ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, const Box& bounds,
-                         const std::function<float(const Vector3&)>& occupancy,
-                         const Progress& progress, int threads) {
+                         const std::function<float(const Vector3&)>& occupancy, const Run& run) {
   const double plate = thickness / 2.0;
   const double largest = plate * (1.0 + kRod + kSpeck);
   const std::vector<Vector3> normals = normals_of(mesh);
   const OpposedBricks bricks(mesh, normals, std::max(kLeastBrick, 2.0 * largest), bounds,
-                             progress.part(0.0, 0.2), threads);
+                             run.part(0.0, 0.2));
   ThickPieces result;
   if (bricks.is_empty()) return result;
   std::vector<std::uint32_t> triangles;
@@ -336,12 +334,12 @@ ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, c
   for (const Represented& other : chosen.others) {
     if (other.is_back) facing.push_back(other.triangle);
   }
-  const InnerBalls balls(mesh, normals, facing, progress.part(0.2, 0.4), threads);
+  const InnerBalls balls(mesh, normals, facing, run.part(0.2, 0.4));
   result.winding = std::make_unique<const WindingNumbers>(InputMesh{mesh.positions, mesh.triangles},
-                                                          progress.part(0.4, 0.5), threads);
+                                                          run.part(0.4, 0.5));
   const OuterSides outer(occupancy, *result.winding);
-  const std::vector<Candidate> candidates = find_candidates(
-      mesh, normals, chosen, bricks, balls, outer, largest, progress.part(0.5, 0.95), threads);
+  const std::vector<Candidate> candidates =
+      find_candidates(mesh, normals, chosen, bricks, balls, outer, largest, run.part(0.5, 0.95));
   CubeTable<PlaceSums> places;
   for (const Candidate& one : candidates) {
     if (one.is_plate) continue;
@@ -384,7 +382,7 @@ ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, c
     result.pieces.push_back(piece);
   }
   result.others = std::move(chosen.others);
-  progress.report(1.0);
+  run.report(1.0);
   return result;
 }
 

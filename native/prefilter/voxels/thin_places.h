@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/geometry/spatial/winding_numbers.h"
 #include "prefilter/voxels/representatives.h"
 
@@ -40,7 +40,6 @@ struct ThickPieces {
 /// and the normal field (2012), restricted to opposed surfaces, so that roughness and edges do not
 /// count as thin. `occupancy(point)` returns the occupancy of the cell that contains a point.
 ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, const Box& bounds,
-                         const std::function<float(const Vector3&)>& occupancy,
-                         const Progress& progress, int threads);
+                         const std::function<float(const Vector3&)>& occupancy, const Run& run);
 
 }  // namespace prefilter

@@ -67,13 +67,12 @@ SurfaceExtent extent_of(const RootTriangles& mesh, std::int64_t begin, std::int6
 }
 
 // Throws Error if all triangles have zero area, or the tree would not fit into memory.
-void check_surface(const RootTriangles& mesh, int depth, const Progress& progress, int threads) {
+void check_surface(const RootTriangles& mesh, int depth, const Run& run) {
   const auto count = static_cast<std::int64_t>(mesh.mesh.triangles.size());
   std::vector<SurfaceExtent> parts(static_cast<std::size_t>(range_count(count, kRowsPerTask)));
-  parallel_ranges(
-      count, kRowsPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
-        parts[static_cast<std::size_t>(begin / kRowsPerTask)] = extent_of(mesh, begin, end);
-      });
+  parallel_ranges(count, kRowsPerTask, run, [&](std::int64_t begin, std::int64_t end) {
+    parts[static_cast<std::size_t>(begin / kRowsPerTask)] = extent_of(mesh, begin, end);
+  });
   SurfaceExtent all;
   for (const SurfaceExtent& part : parts) {
     all.cells += part.cells;
@@ -125,14 +124,14 @@ Octree voxelize(const InputMesh& mesh, const VoxelizeOptions& options) {
   }
 
   const bool is_thickened = options.thickness > 0.0;
-  const Progress making = options.progress.part(0.0, is_thickened ? 0.5 : 1.0);
+  const Run making = options.run.part(0.0, is_thickened ? 0.5 : 1.0);
   const RootTriangles in_root{mesh, octree.bounds};
-  check_surface(in_root, options.depth, making.part(0.0, 0.05), options.threads);
-  HaarTree coefficients =
-      analyze_triangles(in_root, options.depth, making.part(0.05, 0.9), options.threads);
-  octree.cells = synthesise(std::move(coefficients), -1, making.part(0.9, 1.0), options.threads);
+  const Stages stages(making, {1, 17, 2});
+  check_surface(in_root, options.depth, stages[0]);
+  HaarTree coefficients = analyze_triangles(in_root, options.depth, stages[1]);
+  octree.cells = synthesise(std::move(coefficients), -1, stages[2]);
   if (is_thickened) {
-    thicken(in_root, options.thickness, options.progress.part(0.5, 1.0), options.threads, &octree);
+    thicken(in_root, options.thickness, options.run.part(0.5, 1.0), &octree);
   }
   return octree;
 }

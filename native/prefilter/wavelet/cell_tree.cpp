@@ -32,22 +32,22 @@ void link_blocks(TreeLevel* level) {
   }
 }
 
-void for_blocks(const TreeLevel& level, int threads, const Progress& progress,
+void for_blocks(const TreeLevel& level, const Run& run,
                 const std::function<void(std::size_t, std::size_t)>& body) {
-  parallel_ranges(static_cast<std::int64_t>(level.size()), kBlocksPerTask, threads, progress,
+  parallel_ranges(static_cast<std::int64_t>(level.size()), kBlocksPerTask, run,
                   [&](std::int64_t begin, std::int64_t end) {
                     body(static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
                   });
 }
 
-void update_means(CellTree* tree, const Progress& progress, int threads) {
+void update_means(CellTree* tree, const Run& run) {
   if (tree->levels.empty()) return;
   const auto steps = static_cast<double>(tree->levels.size() - 1);
   double done = 0.0;
   for (std::size_t k = tree->levels.size() - 1; k-- > 0; ++done) {
     TreeLevel& level = tree->levels[k];
-    const Progress part = progress.part(done / steps, (done + 1.0) / steps);
-    for_blocks(level, threads, part, [&](std::size_t begin, std::size_t end) {
+    const Run part = run.part(done / steps, (done + 1.0) / steps);
+    for_blocks(level, part, [&](std::size_t begin, std::size_t end) {
       pass_up(tree->levels[k + 1], begin, end, &level);
     });
   }

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/wavelet/daubechies.h"
 
 namespace prefilter::d4 {
@@ -132,15 +132,14 @@ std::vector<BrickPosition> coarser_bricks(const std::vector<BrickPosition>& bric
 
 // Calls make(i) for all bricks in parallel, then keep(i, made) in order.
 template <typename Brick, typename Make, typename Keep>
-void for_bricks(std::size_t count, const Progress& progress, int threads, const Make& make,
-                const Keep& keep) {
+void for_bricks(std::size_t count, const Run& run, const Make& make, const Keep& keep) {
   constexpr std::size_t kBricksPerRound = 1024;
   constexpr std::int64_t kBricksPerTask = 32;
   std::vector<Brick> made(std::min(count, kBricksPerRound));
   for (std::size_t first = 0; first < count; first += kBricksPerRound) {
     const std::size_t size = std::min(kBricksPerRound, count - first);
-    progress.report(static_cast<double>(first) / static_cast<double>(count));
-    parallel_ranges(static_cast<std::int64_t>(size), kBricksPerTask, threads, Progress(),
+    run.report(static_cast<double>(first) / static_cast<double>(count));
+    parallel_ranges(static_cast<std::int64_t>(size), kBricksPerTask, Run(run.threads()),
                     [&](std::int64_t begin, std::int64_t end) {
                       for (auto i = static_cast<std::size_t>(begin);
                            i < static_cast<std::size_t>(end); ++i) {
@@ -158,12 +157,11 @@ std::unique_ptr<DifferenceWindow> window_around(const Differences& finer, const 
   return window;
 }
 
-void restrict_to(const Differences& finer, const Progress& progress, int threads,
-                 Differences* coarser) {
+void restrict_to(const Differences& finer, const Run& run, Differences* coarser) {
   const Filters filters = make_filters();
   const std::vector<BrickPosition> bricks = coarser_bricks(finer.positions());
   for_bricks<Differences::Brick>(
-      bricks.size(), progress, threads,
+      bricks.size(), run,
       [&](std::size_t i) { return restricted(*window_around(finer, bricks[i]), filters); },
       [&](std::size_t i, const Differences::Brick& made) {
         Differences::Brick& brick = coarser->make(bricks[i]);
@@ -173,11 +171,11 @@ void restrict_to(const Differences& finer, const Progress& progress, int threads
 
 // The details in the given bricks.
 Details details_in(const std::vector<BrickPosition>& bricks, const Differences& finer, int depth,
-                   const Progress& progress, int threads) {
+                   const Run& run) {
   const Filters filters = make_filters();
   Details details(depth, kShardBits);
   for_bricks<Details::Brick>(
-      bricks.size(), progress, threads,
+      bricks.size(), run,
       [&](std::size_t i) { return details_of(*window_around(finer, bricks[i]), filters); },
       [&](std::size_t i, const Details::Brick& made) { details.make(bricks[i]) = made; });
   return details;
@@ -303,15 +301,13 @@ void add_sample(const Vector3& point, const std::array<float, 3>& area, Differen
 }
 
 std::vector<Means> transform(std::vector<Differences> differences,
-                             std::vector<std::vector<BrickPosition>> needed,
-                             const Progress& progress, int threads) {
+                             std::vector<std::vector<BrickPosition>> needed, const Run& run) {
   const std::size_t depth = differences.size() - 1;
   // Most of the time is spent in the finest depth, and there on the details.
   constexpr double kRestrictShare = 0.2;
   for (std::size_t k = depth; k > 0; --k) {
     const bool is_finest = k == depth;
-    restrict_to(differences[k],
-                progress.part(is_finest ? 0.0 : 0.15, is_finest ? 0.15 : kRestrictShare), threads,
+    restrict_to(differences[k], run.part(is_finest ? 0.0 : 0.15, is_finest ? 0.15 : kRestrictShare),
                 &differences[k - 1]);
     sort_unique(&needed[k]);
     const std::vector<BrickPosition> more = coarser_bricks(needed[k]);
@@ -328,7 +324,7 @@ std::vector<Means> transform(std::vector<Differences> differences,
       return std::array{a[2], a[1], a[0]} < std::array{b[2], b[1], b[0]};
     });
     std::vector<BrickPosition> all = coarser_bricks(differences[k].positions());
-    const Progress part = progress.part(k < depth ? kRestrictShare : 0.4, k < depth ? 0.4 : 1.0);
+    const Run part = run.part(k < depth ? kRestrictShare : 0.4, k < depth ? 0.4 : 1.0);
     const auto count = static_cast<double>(bricks.size());
     for (std::size_t begin = 0; begin < bricks.size();) {
       std::size_t end = std::min(begin + kBricksPerBatch, bricks.size());
@@ -342,10 +338,10 @@ std::vector<Means> transform(std::vector<Differences> differences,
       const double from = static_cast<double>(begin) / count;
       const double to = static_cast<double>(end) / count;
       const double between = from + 0.8 * (to - from);
-      const Details details = details_in(around, differences[k], static_cast<int>(k) - 1,
-                                         part.part(from, between), threads);
+      const Details details =
+          details_in(around, differences[k], static_cast<int>(k) - 1, part.part(from, between));
       for_bricks<Means::Brick>(
-          end - begin, part.part(between, to), threads,
+          end - begin, part.part(between, to),
           [&](std::size_t i) { return means_in(bricks[begin + i], coarser, details); },
           [&](std::size_t i, const Means::Brick& made) { finer.make(bricks[begin + i]) = made; });
       begin = end;

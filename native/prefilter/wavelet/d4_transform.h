@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/wavelet/brick_grid.h"
 #include "prefilter/wavelet/cell_tree.h"
 
@@ -36,8 +36,7 @@ void add_sample(const Vector3& point, const std::array<float, 3>& area, Differen
 /// coarse samples directly to coarse differences. The means are computed in the bricks `needed[k]`
 /// of depth k, and in the bricks that these depend on. Throws Error(kCancelled).
 std::vector<Means> transform(std::vector<Differences> differences,
-                             std::vector<std::vector<BrickPosition>> needed,
-                             const Progress& progress, int threads);
+                             std::vector<std::vector<BrickPosition>> needed, const Run& run);
 
 /// The function at the centers of a brick's cells, [z][y][x]: the sum of means times phi.
 std::array<float, 64> function_at(const Means& means, const BrickPosition& brick);

@@ -47,9 +47,9 @@ class BorderRule {
 };
 }  // namespace
 
-CellTree with_fine_border(const CellTree& tree, const Progress& progress, int threads) {
+CellTree with_fine_border(const CellTree& tree, const Run& run) {
   const BorderRule rule(tree);
-  return build_tree(rule.root(), tree.depth(), rule, progress, threads);
+  return build_tree(rule.root(), tree.depth(), rule, run);
 }
 
 }  // namespace prefilter

@@ -45,7 +45,7 @@ void pass_down(const TreeLevel& level, std::size_t begin, std::size_t end, TreeL
 
 }  // namespace
 
-CellTree synthesise(HaarTree coefficients, int depth, const Progress& progress, int threads) {
+CellTree synthesise(HaarTree coefficients, int depth, const Run& run) {
   CellTree tree;
   tree.root = static_cast<float>(coefficients.mean);
   tree.levels = std::move(coefficients.levels);
@@ -62,14 +62,14 @@ CellTree synthesise(HaarTree coefficients, int depth, const Progress& progress, 
     const bool is_last = k + 1 == tree.levels.size();
     if (!is_last) link_blocks(&level);
     const auto part =
-        progress.part(static_cast<double>(k) / count, (static_cast<double>(k) + 1) / count);
-    for_blocks(level, threads, part, [&](std::size_t begin, std::size_t end) {
+        run.part(static_cast<double>(k) / count, (static_cast<double>(k) + 1) / count);
+    for_blocks(level, part, [&](std::size_t begin, std::size_t end) {
       to_values(is_last, begin, end, &level);
       if (!is_last) pass_down(level, begin, end, &tree.levels[k + 1]);
     });
   }
   tree.levels.back().first.assign(tree.levels.back().size(), 0U);
-  update_means(&tree, progress.part((count - 1.0) / count, 1.0), threads);
+  update_means(&tree, run.part((count - 1.0) / count, 1.0));
   return tree;
 }
 

@@ -9,7 +9,7 @@
 // there: a Walsh-Hadamard transform of eight numbers.
 #pragma once
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/wavelet/cell_tree.h"
 
 namespace prefilter {
@@ -41,6 +41,6 @@ struct HaarTree {
 /// all). For closed surfaces, cells without boundary have the exact value 0 or 1, as rounding
 /// errors up to 1e-5 are removed. Where surfaces overlap or are inverted, the winding number
 /// differs from 0 and 1; values are clamped to [0, 1], so that overlaps count once.
-CellTree synthesise(HaarTree coefficients, int depth, const Progress& progress, int threads);
+CellTree synthesise(HaarTree coefficients, int depth, const Run& run);
 
 }  // namespace prefilter

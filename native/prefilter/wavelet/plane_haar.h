@@ -28,15 +28,15 @@ class PlaneHaar {
   PlaneHaar(const PlaneGrid& grid, std::span<StripBricks> strips);
 
   /// Synthesis (equation 3.3) down to cells of side 2^cell_depth, for rows [first_row, end_row),
-  /// which are multiples of a brick's side unless the grid ends there. Calls run(row, begin, end,
-  /// value) for cells of a row with the same value, and block(x, y, values) for bricks, with 8
+  /// which are multiples of a brick's side unless the grid ends there. Calls use_run(row, begin,
+  /// end, value) for cells of a row with the same value, and block(x, y, values) for bricks, with 8
   /// values per row; x and y are multiples of 8, and the block may extend beyond the grid's columns
   /// and the rows. Each cell is in exactly one of these.
   ///
   /// For closed outlines values away from the curves are integers; rounding errors up to 1e-5 are
   /// removed.
-  template <typename Run, typename Block>
-  void synthesise(int cell_depth, int first_row, int end_row, const Run& run,
+  template <typename UseRun, typename Block>
+  void synthesise(int cell_depth, int first_row, int end_row, const UseRun& use_run,
                   const Block& block) const;
 
   double mean() const { return mean_; }
@@ -59,13 +59,13 @@ class PlaneHaar {
   static void brick_values(const PlaneBrick& brick, float mean, int cell_depth,
                            BrickValues* values);
 
-  template <typename Run, typename Block>
+  template <typename UseRun, typename Block>
   struct Walk {
     const PlaneHaar& tree;
     int cell_depth;
     int first_row;
     int end_row;
-    const Run& run;
+    const UseRun& use_run;
     const Block& block;
 
     void visit(int level, int x, int y, int place, double mean) const;
@@ -79,21 +79,21 @@ class PlaneHaar {
   std::vector<PlaneBrick> bricks_;
 };
 
-template <typename Run, typename Block>
-void PlaneHaar::Walk<Run, Block>::fill(int level, int x, int y, double mean) const {
+template <typename UseRun, typename Block>
+void PlaneHaar::Walk<UseRun, Block>::fill(int level, int x, int y, double mean) const {
   const int side = 1 << (tree.grid_.depth - level);
   const int begin = x * side;
   const int end = std::min(begin + side, tree.grid_.width);
   if (begin >= end) return;
   const float value = without_rounding(mean);
   for (int row = std::max(y * side, first_row); row < std::min(y * side + side, end_row); ++row) {
-    run(row, begin, end, value);
+    use_run(row, begin, end, value);
   }
 }
 
 // Visits a cell of a level within the requested rows.
-template <typename Run, typename Block>
-void PlaneHaar::Walk<Run, Block>::visit(int level, int x, int y, int place, double mean) const {
+template <typename UseRun, typename Block>
+void PlaneHaar::Walk<UseRun, Block>::visit(int level, int x, int y, int place, double mean) const {
   const int depth = tree.grid_.depth - level;
   if (place < 0) {
     fill(level, x, y, mean);
@@ -103,7 +103,7 @@ void PlaneHaar::Walk<Run, Block>::visit(int level, int x, int y, int place, doub
     const int side = 1 << depth;
     const int end = std::min(x * side + side, tree.grid_.width);
     for (int row = std::max(y * side, first_row); row < std::min(y * side + side, end_row); ++row) {
-      run(row, x * side, end, static_cast<float>(mean));
+      use_run(row, x * side, end, static_cast<float>(mean));
     }
     return;
   }
@@ -125,10 +125,10 @@ void PlaneHaar::Walk<Run, Block>::visit(int level, int x, int y, int place, doub
   }
 }
 
-template <typename Run, typename Block>
-void PlaneHaar::synthesise(int cell_depth, int first_row, int end_row, const Run& run,
+template <typename UseRun, typename Block>
+void PlaneHaar::synthesise(int cell_depth, int first_row, int end_row, const UseRun& use_run,
                            const Block& block) const {
-  const Walk<Run, Block> walk{*this, cell_depth, first_row, end_row, run, block};
+  const Walk<UseRun, Block> walk{*this, cell_depth, first_row, end_row, use_run, block};
   walk.visit(0, 0, 0, bricks_.empty() ? -1 : 0, mean_);
 }
 

@@ -238,13 +238,13 @@ bool has_coarse_surface(const CellTree& tree) {
   return false;
 }
 
-CellTree refined(const CellTree& tree, int depth, const Progress& progress, int threads) {
+CellTree refined(const CellTree& tree, int depth, const Run& run) {
   const int most = std::max(depth, tree.depth());
   const SurfaceRule by_surface(tree, depth);
-  const CellTree split =
-      build_tree(by_surface.root(), most, by_surface, progress.part(0.0, 0.7), threads);
+  const Stages stages(run, {7, 3});
+  const CellTree split = build_tree(by_surface.root(), most, by_surface, stages[0]);
   const SideRule by_side(split, depth);
-  return build_tree(by_side.root(), most, by_side, progress.part(0.7, 1.0), threads);
+  return build_tree(by_side.root(), most, by_side, stages[1]);
 }
 
 }  // namespace prefilter

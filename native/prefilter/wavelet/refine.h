@@ -3,7 +3,7 @@
 // Refines occupancy octrees along their surface to cells of one size.
 #pragma once
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/wavelet/cell_tree.h"
 
 namespace prefilter {
@@ -19,6 +19,6 @@ bool has_coarse_surface(const CellTree& tree);
 /// are split where they border on other values.
 ///
 /// Preconditions: occupancies in [0, 1], and a depth up to kMaxTreeDepth. Throws Error(kCancelled).
-CellTree refined(const CellTree& tree, int depth, const Progress& progress, int threads);
+CellTree refined(const CellTree& tree, int depth, const Run& run);
 
 }  // namespace prefilter

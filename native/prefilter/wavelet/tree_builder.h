@@ -39,8 +39,7 @@ BuiltCell build_block(int depth, TreeLevels* levels, const BuildOctant& build_oc
 /// Builds a tree from any kind of root cell, using `is_split(cell, depth)`, `value(cell, depth)`
 /// for leaves, and `octant(cell, depth, o)` for split cells. Throws Error(kCancelled).
 template <typename Cell, typename Rule>
-CellTree build_tree(const Cell& root, int most_depth, const Rule& rule, const Progress& progress,
-                    int threads) {
+CellTree build_tree(const Cell& root, int most_depth, const Rule& rule, const Run& run) {
   constexpr int kTaskDepth = 3;
   struct Task {
     Cell cell;
@@ -65,14 +64,14 @@ CellTree build_tree(const Cell& root, int most_depth, const Rule& rule, const Pr
     for (int o = 0; o < 8; ++o) self(self, rule.octant(cell, depth, o), depth + 1);
   };
   find(find, root, 0);
-  parallel_for(static_cast<std::int64_t>(tasks.size()), threads, progress.part(0.0, 0.8),
-               [&](std::int64_t i) {
-                 Task& task = tasks[static_cast<std::size_t>(i)];
-                 task.levels.resize(static_cast<std::size_t>(most_depth));
-                 task.built = build(build, task.cell, kTaskDepth, &task.levels);
-               });
+  const Stages stages(run, {16, 3, 1});
+  parallel_for(static_cast<std::int64_t>(tasks.size()), stages[0], [&](std::int64_t i) {
+    Task& task = tasks[static_cast<std::size_t>(i)];
+    task.levels.resize(static_cast<std::size_t>(most_depth));
+    task.built = build(build, task.cell, kTaskDepth, &task.levels);
+  });
   TreeLevels levels(static_cast<std::size_t>(most_depth));
-  const Progress gathering = progress.part(0.8, 0.95);
+  const Run gathering = stages[1];
   std::size_t next_task = 0;
   const auto gather = [&](const auto& self, const Cell& cell, int depth) -> BuiltCell {
     if (!rule.is_split(cell, depth)) return {rule.value(cell, depth), false};
@@ -95,7 +94,7 @@ CellTree build_tree(const Cell& root, int most_depth, const Rule& rule, const Pr
   while (!levels.empty() && levels.back().size() == 0) levels.pop_back();
   tree.levels = std::move(levels);
   for (TreeLevel& level : tree.levels) link_blocks(&level);
-  update_means(&tree, progress.part(0.95, 1.0), threads);
+  update_means(&tree, stages[2]);
   return tree;
 }
 

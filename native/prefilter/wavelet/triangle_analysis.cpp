@@ -73,7 +73,7 @@ void scatter(const RootTriangles& mesh, std::size_t begin, std::size_t end, int 
 
 // One pass of a stable radix sort by some bits of the brick, from chunks to `sorted`.
 void sort_by_digit(std::span<const std::span<const BrickTriangle>> chunks, int shift, int bits,
-                   const Progress& progress, int threads, std::span<BrickTriangle> sorted) {
+                   const Run& run, std::span<BrickTriangle> sorted) {
   const std::size_t digits = std::size_t{1} << bits;
   const auto digit_of = [&](const BrickTriangle& pair) {
     return (pair.brick >> shift) & (digits - 1);
@@ -81,7 +81,8 @@ void sort_by_digit(std::span<const std::span<const BrickTriangle>> chunks, int s
   // Counts per chunk and digit, then the position of the next pair of each.
   std::vector<std::size_t> places(chunks.size() * digits);
   const auto count = static_cast<std::int64_t>(chunks.size());
-  parallel_for(count, threads, progress.part(0.0, 0.3), [&](std::int64_t i) {
+  const Stages stages(run, {3, 7});
+  parallel_for(count, stages[0], [&](std::int64_t i) {
     const auto chunk = static_cast<std::size_t>(i);
     std::size_t* const own = places.data() + chunk * digits;
     for (const BrickTriangle& pair : chunks[chunk]) ++own[digit_of(pair)];
@@ -92,7 +93,7 @@ void sort_by_digit(std::span<const std::span<const BrickTriangle>> chunks, int s
       next += std::exchange(places[chunk * digits + digit], next);
     }
   }
-  parallel_for(count, threads, progress.part(0.3, 1.0), [&](std::int64_t i) {
+  parallel_for(count, stages[1], [&](std::int64_t i) {
     const auto chunk = static_cast<std::size_t>(i);
     std::size_t* const own = places.data() + chunk * digits;
     for (const BrickTriangle& pair : chunks[chunk]) sorted[own[digit_of(pair)]++] = pair;
@@ -102,7 +103,7 @@ void sort_by_digit(std::span<const std::span<const BrickTriangle>> chunks, int s
 // Sorts the pairs of all parts by brick, stably, so that each brick's triangles remain in order.
 // Least significant digit first.
 std::vector<BrickTriangle> sorted_by_brick(const std::vector<Scattered>& parts, int key_bits,
-                                           const Progress& progress, int threads) {
+                                           const Run& run) {
   constexpr int kMaxDigitBits = 9;
   constexpr std::size_t kPairsPerChunk = 1U << 15;
   const int passes = std::max(1, (key_bits + kMaxDigitBits - 1) / kMaxDigitBits);
@@ -116,8 +117,8 @@ std::vector<BrickTriangle> sorted_by_brick(const std::vector<Scattered>& parts, 
   std::vector<BrickTriangle> sorted(count);
   std::vector<BrickTriangle> other(passes > 1 ? count : 0);
   for (int pass = 0; pass < passes; ++pass) {
-    const Progress part = progress.part(static_cast<double>(pass) / passes, (pass + 1.0) / passes);
-    sort_by_digit(chunks, pass * bits, bits, part, threads, sorted);
+    const Run part = run.part(static_cast<double>(pass) / passes, (pass + 1.0) / passes);
+    sort_by_digit(chunks, pass * bits, bits, part, sorted);
     if (pass + 1 == passes) break;
     sorted.swap(other);
     chunks.clear();
@@ -210,19 +211,17 @@ class Brick {
 };
 
 // Pairs for all triangles, sorted by brick and then by triangle.
-Scattered scatter_all(const RootTriangles& mesh, int bricks_per_axis, const Progress& progress,
-                      int threads) {
+Scattered scatter_all(const RootTriangles& mesh, int bricks_per_axis, const Run& run) {
   const auto count = static_cast<std::int64_t>(mesh.mesh.triangles.size());
   std::vector<Scattered> parts(static_cast<std::size_t>(range_count(count, kTrianglesPerTask)));
-  parallel_ranges(count, kTrianglesPerTask, threads, progress.part(0.0, 0.6),
-                  [&](std::int64_t begin, std::int64_t end) {
-                    scatter(mesh, static_cast<std::size_t>(begin), static_cast<std::size_t>(end),
-                            bricks_per_axis,
-                            &parts[static_cast<std::size_t>(begin / kTrianglesPerTask)]);
-                  });
+  const Stages stages(run, {3, 2});
+  parallel_ranges(count, kTrianglesPerTask, stages[0], [&](std::int64_t begin, std::int64_t end) {
+    scatter(mesh, static_cast<std::size_t>(begin), static_cast<std::size_t>(end), bricks_per_axis,
+            &parts[static_cast<std::size_t>(begin / kTrianglesPerTask)]);
+  });
   Scattered all;
   const int bits = 3 * std::bit_width(static_cast<unsigned>(bricks_per_axis - 1));
-  all.pairs = sorted_by_brick(parts, bits, progress.part(0.6, 1.0), threads);
+  all.pairs = sorted_by_brick(parts, bits, stages[1]);
   for (const Scattered& part : parts) {
     all.leaving.insert(all.leaving.end(), part.leaving.begin(), part.leaving.end());
   }
@@ -258,11 +257,10 @@ BrickBlocks analyze_bricks(const RootTriangles& mesh, std::span<const BrickTrian
 }
 
 // Concatenates the tasks' blocks, level by level.
-void join(const Progress& progress, std::vector<BrickBlocks>* parts, int brick_depth,
+void join(const Run& run, std::vector<BrickBlocks>* parts, int brick_depth,
           std::span<TreeLevel> levels) {
   for (int k = 0; k < brick_depth; ++k) {
-    const Progress of_level =
-        progress.part(static_cast<double>(k) / brick_depth, (k + 1.0) / brick_depth);
+    const Run of_level = run.part(static_cast<double>(k) / brick_depth, (k + 1.0) / brick_depth);
     std::size_t count = 0;
     for (const BrickBlocks& part : *parts) count += part.levels[k].size();
     TreeLevel& level = levels[static_cast<std::size_t>(k)];
@@ -298,17 +296,15 @@ std::vector<BrickFlux> add_parents(const std::vector<BrickFlux>& cells, TreeLeve
 }
 }  // namespace
 
-HaarTree analyze_triangles(const RootTriangles& mesh, int depth, const Progress& progress,
-                           int threads) {
+HaarTree analyze_triangles(const RootTriangles& mesh, int depth, const Run& run) {
   const int brick_depth = std::min(depth, kBrickDepth);
   const int coarse_depth = depth - brick_depth;
-  const Scattered scattered =
-      scatter_all(mesh, 1 << coarse_depth, progress.part(0.0, kScatterShare), threads);
+  const Scattered scattered = scatter_all(mesh, 1 << coarse_depth, run.part(0.0, kScatterShare));
 
   const std::vector<std::size_t> starts = task_starts(scattered.pairs);
   std::vector<BrickBlocks> parts(starts.size() - 1);
-  parallel_for(static_cast<std::int64_t>(parts.size()), threads,
-               progress.part(kScatterShare, kAnalyzedShare), [&](std::int64_t task) {
+  parallel_for(static_cast<std::int64_t>(parts.size()), run.part(kScatterShare, kAnalyzedShare),
+               [&](std::int64_t task) {
                  const auto i = static_cast<std::size_t>(task);
                  const std::span<const BrickTriangle> pairs(scattered.pairs);
                  parts[i] =
@@ -327,7 +323,7 @@ HaarTree analyze_triangles(const RootTriangles& mesh, int depth, const Progress&
   HaarTree tree;
   if (!cells.empty()) {
     tree.levels.resize(static_cast<std::size_t>(depth));
-    join(progress.part(kAnalyzedShare, 1.0), &parts, brick_depth,
+    join(run.part(kAnalyzedShare, 1.0), &parts, brick_depth,
          std::span(tree.levels).subspan(coarse_depth));
     for (int k = coarse_depth - 1; k >= 0; --k) {
       cells = add_parents(cells, &tree.levels[static_cast<std::size_t>(k)]);

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/wavelet/haar.h"
 
 namespace prefilter {
@@ -31,7 +31,6 @@ struct RootTriangles {
 /// s^2 for each of the cells of side s that contain both, and the mean of the root by the error of
 /// `root_mean`. Preconditions: finite positions within 1e6 of the root, valid indices. Throws
 /// Error(kCancelled), and std::bad_alloc.
-HaarTree analyze_triangles(const RootTriangles& mesh, int depth, const Progress& progress,
-                           int threads);
+HaarTree analyze_triangles(const RootTriangles& mesh, int depth, const Run& run);
 
 }  // namespace prefilter

@@ -19,14 +19,14 @@ namespace {
 TEST(ParallelFor, VisitsEveryIndexOnce) {
   for (const int threads : {1, 2, 7}) {
     std::vector<std::atomic<int>> visits(1000);
-    parallel_for(1000, threads, Progress(), [&](std::int64_t i) { ++visits[i]; });
+    parallel_for(1000, prefilter::Run(threads), [&](std::int64_t i) { ++visits[i]; });
     for (const std::atomic<int>& count : visits) EXPECT_EQ(count, 1);
   }
 }
 
 TEST(ParallelFor, PassesOnTheExceptionOfABody) {
   const auto fail = [] {
-    parallel_for(100, 3, Progress(), [](std::int64_t i) {
+    parallel_for(100, prefilter::Run(3), [](std::int64_t i) {
       if (i == 17) throw std::runtime_error("seventeen");
     });
   };
@@ -36,11 +36,11 @@ TEST(ParallelFor, PassesOnTheExceptionOfABody) {
 TEST(ParallelFor, ReportsTheEndWhenAWorkerIsLast) {
   const std::thread::id caller = std::this_thread::get_id();
   std::vector<double> seen;
-  const Progress progress([&](double fraction) {
+  const prefilter::Run run([&](double fraction) {
     seen.push_back(fraction);
     return true;
   });
-  parallel_for(2, 2, progress, [&](std::int64_t) {
+  parallel_for(2, run.with_threads(2), [&](std::int64_t) {
     const bool is_caller = std::this_thread::get_id() == caller;
     std::this_thread::sleep_for(std::chrono::milliseconds(is_caller ? 10 : 200));
   });
@@ -53,20 +53,20 @@ TEST(ParallelFor, StopsSoonWhenCancelled) {
   const std::thread::id caller = std::this_thread::get_id();
   std::atomic<bool> is_cancelled = false;
   std::atomic<int> visits_after = 0;
-  const Progress progress([&](double fraction) {
+  const prefilter::Run run([&](double fraction) {
     if (fraction < 0.01) return true;
     is_cancelled = true;
     return false;
   });
-  const auto run = [&] {
-    parallel_for(kCount, 2, progress, [&](std::int64_t) {
+  const auto visit_all = [&] {
+    parallel_for(kCount, run.with_threads(2), [&](std::int64_t) {
       // The worker thread is held back until then, regardless of scheduling.
       while (std::this_thread::get_id() != caller && !is_cancelled) std::this_thread::yield();
       if (is_cancelled) ++visits_after;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     });
   };
-  EXPECT_THROW(run(), Error);
+  EXPECT_THROW(visit_all(), Error);
   // The index in which the worker was held, and indices that it started before the caller returned
   // from its report. Without cancellation it would visit all the remaining ones.
   EXPECT_LT(visits_after, kCount / 2);
@@ -76,7 +76,7 @@ TEST(ParallelFor, WorkersWaitForThePausedCallback) {
   std::atomic<int> visits = 0;
   int before = 0;
   int after = 0;
-  const Progress progress([&](double fraction) {
+  const prefilter::Run run([&](double fraction) {
     if (fraction < 1.0 && after == 0) {
       // Workers continue for a fifth of a second, and finish the current index, later on a busy
       // machine.
@@ -88,7 +88,7 @@ TEST(ParallelFor, WorkersWaitForThePausedCallback) {
     }
     return true;
   });
-  parallel_for(2000, 3, progress, [&](std::int64_t) {
+  parallel_for(2000, run.with_threads(3), [&](std::int64_t) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ++visits;
   });
@@ -102,7 +102,7 @@ TEST(ParallelRanges, AreWholeGrainsAndTheRest) {
   for (const std::int64_t count : {0, 1, 6, 7, 8, 14, 100}) {
     std::vector<std::atomic<int>> visits(static_cast<std::size_t>(count));
     std::atomic<int> ranges{0};
-    parallel_ranges(count, 7, 3, Progress(), [&](std::int64_t begin, std::int64_t end) {
+    parallel_ranges(count, 7, prefilter::Run(3), [&](std::int64_t begin, std::int64_t end) {
       EXPECT_EQ(begin % 7, 0);
       EXPECT_EQ(end, std::min(count, begin + 7));
       for (std::int64_t i = begin; i < end; ++i) ++visits[i];
@@ -135,14 +135,14 @@ TEST(ParallelTeam, SharesCoverTheWhole) {
 
 TEST(ProgressTest, PartsCoverTheirShareAndRise) {
   std::vector<double> seen;
-  const Progress progress([&](double fraction) {
+  const prefilter::Run run([&](double fraction) {
     seen.push_back(fraction);
     return true;
   });
-  progress.part(0.0, 0.5).report(1.0);
+  run.part(0.0, 0.5).report(1.0);
   std::this_thread::sleep_for(std::chrono::milliseconds(40));
-  progress.part(0.5, 1.0).part(0.0, 0.5).report(0.5);
-  progress.report(1.0);
+  run.part(0.5, 1.0).part(0.0, 0.5).report(0.5);
+  run.report(1.0);
   ASSERT_EQ(seen.size(), 3U);
   EXPECT_DOUBLE_EQ(seen[0], 0.5);
   EXPECT_DOUBLE_EQ(seen[1], 0.625);
@@ -151,13 +151,13 @@ TEST(ProgressTest, PartsCoverTheirShareAndRise) {
 
 TEST(ProgressTest, NeverFallsBack) {
   std::vector<double> seen;
-  const Progress progress([&](double fraction) {
+  const prefilter::Run run([&](double fraction) {
     seen.push_back(fraction);
     return true;
   });
-  progress.report(0.75);
+  run.report(0.75);
   std::this_thread::sleep_for(std::chrono::milliseconds(40));
-  progress.report(0.25);
+  run.report(0.25);
   EXPECT_EQ(seen, (std::vector<double>{0.75, 0.75}));
 }
 

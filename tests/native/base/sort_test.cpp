@@ -20,7 +20,7 @@ TEST(SortInParallel, SortsAsTheStandardLibraryDoes) {
       for (std::uint32_t& value : values) value = static_cast<std::uint32_t>(random() % different);
       std::vector<std::uint32_t> wanted = values;
       std::sort(wanted.begin(), wanted.end(), std::greater<>());
-      sort_in_parallel(&values, Progress(), 3, std::greater<>());
+      sort_in_parallel(&values, prefilter::Run(3), std::greater<>());
       ASSERT_EQ(values, wanted) << count << " " << different;
     }
   }
@@ -28,8 +28,8 @@ TEST(SortInParallel, SortsAsTheStandardLibraryDoes) {
 
 TEST(SortInParallel, CanBeStopped) {
   std::vector<int> values(200000, 1);
-  const Progress stop([](double) { return false; });
-  EXPECT_THROW(sort_in_parallel(&values, stop, 2), Error);
+  const prefilter::Run stop([](double) { return false; });
+  EXPECT_THROW(sort_in_parallel(&values, stop.with_threads(2)), Error);
 }
 
 }  // namespace

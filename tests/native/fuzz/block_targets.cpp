@@ -5,7 +5,7 @@
 
 #include "fuzz/targets.h"
 #include "prefilter/base/error.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/textures/decode_blocks.h"
 #include "prefilter/textures/supercompress.h"
 
@@ -37,12 +37,12 @@ void read_blocks(std::span<const std::uint8_t> bytes) {
   const BlockLayout& layout = layouts[take_number(1, &bytes) % layouts.size()];
   const int width = static_cast<int>(take_number(1, &bytes));
   const int height = static_cast<int>(take_number(1, &bytes));
-  const DecodeOptions options{.format = layout.format, .is_srgb = width % 2 == 0, .threads = 1};
+  const DecodeOptions options{.format = layout.format, .is_srgb = width % 2 == 0};
   try {
     if (layout.is_float) {
-      decode_half_blocks(bytes, width, height, options, Progress());
+      decode_half_blocks(bytes, width, height, options, prefilter::Run());
     } else {
-      decode_blocks(bytes, width, height, options, Progress());
+      decode_blocks(bytes, width, height, options, prefilter::Run());
     }
   } catch (const Error&) {
   }
@@ -63,7 +63,7 @@ void read_etc1s(std::span<const std::uint8_t> bytes) {
   level.color = take(numbers[5], &bytes);
   level.alpha = bytes;
   try {
-    decode_etc1s(codebooks, {&level, 1}, Progress());
+    decode_etc1s(codebooks, {&level, 1}, prefilter::Run());
   } catch (const Error&) {
   }
 }

@@ -58,7 +58,7 @@ void draw(const Outline& outline, unsigned bits) {
   shapes[1].outline = outline.transformed({{0.9, 0.1}, {-0.1, 0.9}, {1.0, 2.0}});
   RasterOptions options;
   options.width = options.height = 24;
-  options.threads = 1;
+  options.run = prefilter::Run(1);
   options.overlap = (bits & 2) != 0 ? Overlap::kAdd : Overlap::kCover;
   const auto filters = raster_filters();
   options.filter = filters[(bits >> 2) % filters.size()];

@@ -66,8 +66,8 @@ void read_points_of(std::span<const std::uint8_t> bytes, const std::string& endi
 void read_ply(std::span<const std::uint8_t> bytes) {
   const Written file(bytes, ".ply");
   refused_or_not([&] { read_points(file.path()); });
-  refused_or_not([&] { read_range_grid(file.path(), Progress()); });
-  refused_or_not([&] { read_faces(file.path(), Progress()); });
+  refused_or_not([&] { read_range_grid(file.path(), prefilter::Run()); });
+  refused_or_not([&] { read_faces(file.path(), prefilter::Run()); });
 }
 
 void read_pcd(std::span<const std::uint8_t> bytes) { read_points_of(bytes, ".pcd"); }

@@ -111,7 +111,7 @@ TEST(Subdivide, StopsWhenAskedTo) {
   Mesh mesh = cube();
   mesh.add_uvs(true);
   SubdivisionOptions options;
-  options.progress = Progress([](double) { return false; });
+  options.run = prefilter::Run([](double) { return false; });
   EXPECT_THROW(subdivide(mesh.arrays(), options), Error);
 }
 

@@ -87,7 +87,7 @@ class MeshOfPieces : public MeshSink {
   Hash hash_;
 };
 
-struct Run {
+struct Setting {
   int threads;
   std::string part;
 
@@ -98,45 +98,46 @@ struct Run {
   }
 };
 
-void bakes(const Run& run) {
-  if (!run.wants("bake")) return;
+void bakes(const Setting& setting) {
+  if (!setting.wants("bake")) return;
   const Surface surface = surface_of(torus(24, 12, 0.1));
   const Image image = picture(63, 48, 4);
   for (const MipmapFilter& filter : mipmap_filters()) {
     MipmapOptions options;
     options.filter = filter;
     options.wrap = {Wrap::kRepeat, Wrap::kClamp};
-    options.threads = run.threads;
-    run.print("bake " + name_of(filter), Hash().add(mipmaps(image.view(), {&surface}, options)));
+    options.run = prefilter::Run(setting.threads);
+    setting.print("bake " + name_of(filter),
+                  Hash().add(mipmaps(image.view(), {&surface}, options)));
   }
   MipmapOptions options;
-  options.threads = run.threads;
+  options.run = prefilter::Run(setting.threads);
   options.seam_budget = 0.1;
-  run.print("bake seams", Hash().add(mipmaps(image.view(), {&surface}, options)));
+  setting.print("bake seams", Hash().add(mipmaps(image.view(), {&surface}, options)));
   options.seam_budget = 0.0;
   options.footprint = 1.0;
-  run.print("bake footprint", Hash().add(mipmaps(image.view(), {&surface}, options)));
+  setting.print("bake footprint", Hash().add(mipmaps(image.view(), {&surface}, options)));
   const std::vector<Image> levels = mipmaps(image.view(), {&surface}, options);
   std::vector<ImageView> views;
   for (const Image& level : levels) views.push_back(level.view());
   ViewFitOptions of_views;
-  of_views.threads = run.threads;
+  of_views.run = prefilter::Run(setting.threads);
   of_views.effort = 0.1;
-  run.print("bake views", Hash().add(fit_to_views(views, {&surface}, of_views)));
+  setting.print("bake views", Hash().add(fit_to_views(views, {&surface}, of_views)));
   const Image roughness = picture(48, 32, 1);
   NormalMipmapOptions of_normals;
-  of_normals.threads = run.threads;
+  of_normals.run = prefilter::Run(setting.threads);
   const NormalMipmaps normals =
       normal_mipmaps(normal_map(48, 32).view(), nullptr, {&surface}, of_normals);
-  run.print("bake normals", Hash().add(normals.normals));
+  setting.print("bake normals", Hash().add(normals.normals));
   const Image map = normal_map(48, 32);
   const ImageView rough = roughness.view();
-  run.print("bake roughness",
-            Hash().add(normal_mipmaps(map.view(), &rough, {&surface}, of_normals).roughness));
+  setting.print("bake roughness",
+                Hash().add(normal_mipmaps(map.view(), &rough, {&surface}, of_normals).roughness));
 }
 
-void subdivisions(const Run& run) {
-  if (!run.wants("subdivide")) return;
+void subdivisions(const Setting& setting) {
+  if (!setting.wants("subdivide")) return;
   const Torus mesh = torus(8, 6, 0.3);
   std::vector<double> positions;
   for (const Vector3& p : mesh.positions) positions.insert(positions.end(), p.begin(), p.end());
@@ -156,28 +157,28 @@ void subdivisions(const Run& run) {
     options.scheme = value_named("scheme", scheme, kSubdivisionSchemes);
     options.level = 2;
     const Surface surface = subdivide(arrays, options);
-    run.print(std::string("subdivide ") + scheme,
-              Hash().add(surface.positions).add(surface.uvs).add(surface.areas));
+    setting.print(std::string("subdivide ") + scheme,
+                  Hash().add(surface.positions).add(surface.uvs).add(surface.areas));
   }
 }
 
-void print_quads(const Run& run, const Octree& octree, const SourceMesh& source) {
+void print_quads(const Setting& setting, const Octree& octree, const SourceMesh& source) {
   ContourOptions options;
   options.sources = std::span(&source, 1);
-  options.threads = run.threads;
+  options.run = prefilter::Run(setting.threads);
   const QuadMesh mesh = contour_quads(octree.cells, octree.bounds, options);
-  run.print("solid quads", Hash().add(mesh.positions).add(mesh.quads).add(mesh.origins));
+  setting.print("solid quads", Hash().add(mesh.positions).add(mesh.quads).add(mesh.origins));
 }
 
-void solids(const Run& run) {
-  if (!run.wants("solid")) return;
+void solids(const Setting& setting) {
+  if (!setting.wants("solid")) return;
   const Torus source = torus(60, 32, 0.2);
   const Torus other = torus(40, 20, -0.9);
   VoxelizeOptions options;
   options.depth = 6;
-  options.threads = run.threads;
+  options.run = prefilter::Run(setting.threads);
   const Octree octree = voxelize(source.mesh(), options);
-  run.print("solid octree", Hash().add(octree));
+  setting.print("solid octree", Hash().add(octree));
   options.depth = 5;
   const Octree second = voxelize(other.mesh(), options);
   constexpr std::array<std::pair<const char*, SetOperation>, 3> kOperations = {
@@ -185,8 +186,8 @@ void solids(const Run& run) {
        {"intersection", SetOperation::kIntersection},
        {"difference", SetOperation::kDifference}}};
   for (const auto& [name, operation] : kOperations) {
-    run.print(std::string("solid ") + name,
-              Hash().add(combine(octree, second, operation, {}, run.threads)));
+    setting.print(std::string("solid ") + name,
+                  Hash().add(combine(octree, second, operation, prefilter::Run(setting.threads))));
   }
   const SourceMesh of_source{source.mesh(), {}};
   constexpr std::array<std::pair<const char*, Interpolant>, 4> kInterpolants = {
@@ -198,43 +199,44 @@ void solids(const Run& run) {
     ContourOptions contour;
     contour.interpolant = interpolant;
     contour.clean_up = false;
-    contour.threads = run.threads;
-    run.print(std::string("solid contour ") + name,
-              Hash().add(contour_tree(octree.cells, octree.bounds, contour)));
+    contour.run = prefilter::Run(setting.threads);
+    setting.print(std::string("solid contour ") + name,
+                  Hash().add(contour_tree(octree.cells, octree.bounds, contour)));
     contour.clean_up = true;
     contour.adaptivity = 0.3;
     if (interpolant == Interpolant::kSharp) contour.sources = std::span(&of_source, 1);
-    run.print(std::string("solid simplified ") + name,
-              Hash().add(contour_tree(octree.cells, octree.bounds, contour)));
+    setting.print(std::string("solid simplified ") + name,
+                  Hash().add(contour_tree(octree.cells, octree.bounds, contour)));
   }
-  print_quads(run, octree, of_source);
+  print_quads(setting, octree, of_source);
   Torus open = source;
   open.triangles.erase(open.triangles.begin() + 200, open.triangles.begin() + 216);
   CloseHolesOptions holes;
-  holes.threads = run.threads;
+  holes.run = prefilter::Run(setting.threads);
   const Caps caps = close_holes(open.mesh(), holes);
-  run.print("solid holes", Hash().add(caps.positions).add(caps.triangles));
+  setting.print("solid holes", Hash().add(caps.positions).add(caps.triangles));
   SolidOptions sheets;
   sheets.cell = 0.1;
-  sheets.threads = run.threads;
+  sheets.run = prefilter::Run(setting.threads);
   const Solid solid = as_solid(open.mesh(), sheets);
-  run.print("solid sheets", Hash().add(solid.positions).add(solid.triangles));
+  setting.print("solid sheets", Hash().add(solid.positions).add(solid.triangles));
 }
 
-void reconstructions(const Run& run) {
-  if (!run.wants("points")) return;
+void reconstructions(const Setting& setting) {
+  if (!setting.wants("points")) return;
   TorusPoints points(20000);
   for (const WaveletBasis basis : {WaveletBasis::kHaar, WaveletBasis::kD4}) {
     ReconstructOptions options;
     options.depth = 6;
     options.basis = basis;
-    options.threads = run.threads;
+    options.run = prefilter::Run(setting.threads);
     MeshOfPieces mesh;
     reconstruct(&points, options, &mesh);
-    run.print(basis == WaveletBasis::kHaar ? "points haar" : "points d4", mesh.hash());
+    setting.print(basis == WaveletBasis::kHaar ? "points haar" : "points d4", mesh.hash());
   }
-  run.print("points normals", Hash().add(estimate_normals(points.positions(), 12, {},
-                                                          NormalSide::kOutward, {}, run.threads)));
+  setting.print("points normals",
+                Hash().add(estimate_normals(points.positions(), 12, {}, NormalSide::kOutward,
+                                            prefilter::Run(setting.threads))));
 }
 
 std::vector<Shape> shapes(double size) {
@@ -257,75 +259,77 @@ std::vector<Shape> shapes(double size) {
   return result;
 }
 
-void pictures(const Run& run) {
-  if (!run.wants("raster")) return;
+void pictures(const Setting& setting) {
+  if (!setting.wants("raster")) return;
   RasterOptions options;
   options.width = options.height = 96;
   options.overlap = Overlap::kAdd;
-  options.threads = run.threads;
+  options.run = prefilter::Run(setting.threads);
   const std::vector<Shape> all = shapes(96.0);
   for (const char* filter : {"box", "tent", "gaussian", "lanczos3", "radial2"}) {
     options.filter = filter;
-    run.print(std::string("raster ") + filter, Hash().add(rasterize(all, options)));
+    setting.print(std::string("raster ") + filter, Hash().add(rasterize(all, options)));
   }
   options.filter = "box";
   options.overlap = Overlap::kCover;
-  run.print("raster covered", Hash().add(rasterize(all, options)));
+  setting.print("raster covered", Hash().add(rasterize(all, options)));
   options.overlap = Overlap::kAdd;
   options.method = RasterMethod::kWavelet;
-  run.print("raster wavelet", Hash().add(rasterize(std::span(all).first(2), options)));
+  setting.print("raster wavelet", Hash().add(rasterize(std::span(all).first(2), options)));
 }
 
-void resampled(const Run& run) {
-  if (!run.wants("resample")) return;
+void resampled(const Setting& setting) {
+  if (!setting.wants("resample")) return;
   const Image image = picture(61, 40, 4);
   for (const ResizeFilter& filter : resize_filters()) {
     ResizeOptions options;
     options.filter = filter;
-    options.threads = run.threads;
-    run.print("resample to 37 x 50 " + name_of(filter),
-              Hash().add(resize(image.view(), 37, 50, options)));
+    options.run = prefilter::Run(setting.threads);
+    setting.print("resample to 37 x 50 " + name_of(filter),
+                  Hash().add(resize(image.view(), 37, 50, options)));
   }
   BuildTableOptions build;
   build.shape = {"lanczos2", 4, 2, 1, 1};
-  build.threads = run.threads;
+  build.run = prefilter::Run(setting.threads);
   const SamplingTable table = build_sampling_table(build);
   Hash of_table;
   for (const TableSection& section : table.sections) {
     of_table.add(section.texels).add(section.coefficients).add(section.errors);
   }
-  run.print("resample table", of_table);
+  setting.print("resample table", of_table);
   ResampleOptions options;
-  options.threads = run.threads;
+  options.run = prefilter::Run(setting.threads);
   const Homography transform = {0.9, 0.3, -4.0, -0.2, 1.7, 3.0, 0.004, 0.009, 1.0};
   for (const auto method : {ResampleOptions::Method::kTrilinear, ResampleOptions::Method::kTable,
                             ResampleOptions::Method::kExact}) {
     options.method = method;
     options.table = &table;
-    run.print("resample by method " + std::to_string(static_cast<int>(method)),
-              Hash().add(resample(image.view(), transform, 64, 64, options)));
+    setting.print("resample by method " + std::to_string(static_cast<int>(method)),
+                  Hash().add(resample(image.view(), transform, 64, 64, options)));
   }
   options.method = ResampleOptions::Method::kTable;
   options.max_probes = 8;
-  run.print("resample by probes", Hash().add(resample(image.view(), transform, 64, 64, options)));
+  setting.print("resample by probes",
+                Hash().add(resample(image.view(), transform, 64, 64, options)));
   options.method = ResampleOptions::Method::kExact;
   options.kernel = find_kernel("gaussian");
-  run.print("resample by ellipses", Hash().add(resample(image.view(), transform, 64, 64, options)));
+  setting.print("resample by ellipses",
+                Hash().add(resample(image.view(), transform, 64, 64, options)));
 }
 
 /// Many of them, and not all whole: where encoders differ between processors, they do in few.
-void blocks(const Run& run) {
+void blocks(const Setting& setting) {
   constexpr int kWidth = 256;
   constexpr int kHeight = kWidth - 3;
-  const std::vector<std::uint8_t> bytes = to_bytes(tiles(kWidth).view(), false, run.threads);
+  const std::vector<std::uint8_t> bytes = to_bytes(tiles(kWidth).view(), false, setting.threads);
   const std::vector<HalfBits> halves = half_tiles(kWidth);
-  const auto print = [&](BlockOptions options, const char* how) {
+  const prefilter::Run run(setting.threads);
+  const auto print = [&](const BlockOptions& options, const char* how) {
     const BlockLayout& layout = layout_of(options.format);
-    options.threads = run.threads;
     const std::vector<std::uint8_t> result =
-        layout.is_float ? compress_blocks(halves.data(), kWidth, kHeight, options, {})
-                        : compress_blocks(bytes.data(), kWidth, kHeight, options, {});
-    run.print(std::string("file ") + layout.name + how, Hash().add(result));
+        layout.is_float ? compress_blocks(halves.data(), kWidth, kHeight, options, run)
+                        : compress_blocks(bytes.data(), kWidth, kHeight, options, run);
+    setting.print(std::string("file ") + layout.name + how, Hash().add(result));
   };
   for (int format = 0; format <= static_cast<int>(BlockFormat::kUastc); ++format) {
     print({static_cast<BlockFormat>(format)}, "");
@@ -341,35 +345,35 @@ void blocks(const Run& run) {
   print({BlockFormat::kAstc4x4, true, true}, " weighed srgb");
 }
 
-void files(const Run& run) {
-  if (!run.wants("file")) return;
+void files(const Setting& setting) {
+  if (!setting.wants("file")) return;
   const Image image = picture(96, 64, 4);
-  run.print("file decoded", Hash().add(decode_srgb(image.view(), run.threads)));
-  run.print("file encoded", Hash().add(encode_srgb(image.view(), run.threads)));
-  const std::vector<std::uint8_t> bytes = to_bytes(image.view(), true, run.threads);
-  run.print("file bytes", Hash().add(bytes));
-  blocks(run);
-  run.print("file zstd", Hash().add(supercompress(bytes.data(), bytes.size(), {})));
+  setting.print("file decoded", Hash().add(decode_srgb(image.view(), setting.threads)));
+  setting.print("file encoded", Hash().add(encode_srgb(image.view(), setting.threads)));
+  const std::vector<std::uint8_t> bytes = to_bytes(image.view(), true, setting.threads);
+  setting.print("file bytes", Hash().add(bytes));
+  blocks(setting);
+  setting.print("file zstd", Hash().add(supercompress(bytes.data(), bytes.size(), {})));
   for (const bool half : {false, true}) {
     ExrTileOptions options;
     options.half = half;
-    options.threads = run.threads;
-    run.print(half ? "file exr half" : "file exr float",
-              Hash().add(exr_tiles(image.view(), 0, 0, 1, options).bytes));
+    options.threads = setting.threads;
+    setting.print(half ? "file exr half" : "file exr float",
+                  Hash().add(exr_tiles(image.view(), 0, 0, 1, options).bytes));
   }
 }
 
 }  // namespace
 
 void print_all(int threads, const std::string& part) {
-  const Run run{threads, part};
-  files(run);
-  bakes(run);
-  subdivisions(run);
-  solids(run);
-  pictures(run);
-  resampled(run);
-  reconstructions(run);
+  const Setting setting{threads, part};
+  files(setting);
+  bakes(setting);
+  subdivisions(setting);
+  solids(setting);
+  pictures(setting);
+  resampled(setting);
+  reconstructions(setting);
 }
 
 }  // namespace prefilter::hashes

@@ -65,7 +65,7 @@ TEST(PlyMeshWriter, RoundTripsAMesh) {
     writer.add_triangles({{0, 1, 2}});
     writer.add_triangles({{2, 1, 0}});
     EXPECT_EQ(folder.file_count(), folder.names_while_written());
-    writer.finish(Progress());
+    writer.finish(prefilter::Run());
     EXPECT_EQ(writer.vertex_count(), 3U);
     EXPECT_EQ(writer.triangle_count(), 2U);
   }
@@ -93,7 +93,7 @@ TEST(PlyMeshWriter, RoundTripsAMesh) {
 TEST(PlyMeshWriter, WritesAnEmptyMesh) {
   const TestFolder folder;
   PlyMeshWriter writer(folder.path("mesh.ply"), {}, true);
-  writer.finish(Progress());
+  writer.finish(prefilter::Run());
   const auto [header, body] = header_and_body(folder.path("mesh.ply"));
   EXPECT_TRUE(header.find("element vertex 0\nproperty double x\n") != std::string::npos);
   EXPECT_EQ(body, "");
@@ -109,7 +109,7 @@ TEST(PlyMeshWriter, HeadersHaveTheRoomForCounts) {
     held.clear();
     PlyMeshWriter writer(path, {}, false);
     writer.add_vertices({{1, 2, 3}}, {});
-    writer.finish(Progress());
+    writer.finish(prefilter::Run());
     const std::string header = header_and_body(path).first;
     const std::size_t comment = std::strlen("comment Prefilter\n");
     EXPECT_EQ(contents(path).size(), header.size() + comment + 2 * 20 + 3 * sizeof(float));
@@ -148,7 +148,7 @@ TEST(PlyMeshWriter, WritesInPieces) {
   PlyMeshWriter writer(path, {{"gray", true}}, true);
   add_grid(kVertices, kTriangles, &writer);
   EXPECT_EQ(folder.file_count(), folder.names_while_written());
-  writer.finish(Progress());
+  writer.finish(prefilter::Run());
   const std::string body = header_and_body(path).second;
   ASSERT_EQ(body.size(), kVertices * 25 + kTriangles * 13);
   for (std::size_t i = 0; i < kVertices; ++i) {
@@ -177,7 +177,7 @@ TEST(PlyMeshWriter, LeavesTheTargetUntilFinished) {
   {
     PlyMeshWriter writer(path, {{"gray", true}}, false);
     add_grid(100000, 100000, &writer);
-    const Progress stop([](double) { return false; });
+    const prefilter::Run stop([](double) { return false; });
     EXPECT_THROW(writer.finish(stop), Error);
   }
   EXPECT_EQ(contents(path), "before");
@@ -191,7 +191,7 @@ TEST(PlyMeshWriter, ReplacesTheTargetOfALinkAndKeepsItsMode) {
   ::chmod(folder.path("real.ply").c_str(), 0640);
   std::filesystem::create_symlink("real.ply", folder.path("link.ply"));
   PlyMeshWriter writer(folder.path("link.ply"), {}, false);
-  writer.finish(Progress());
+  writer.finish(prefilter::Run());
   EXPECT_TRUE(std::filesystem::is_symlink(folder.path("link.ply")));
   EXPECT_EQ(contents(folder.path("real.ply")).substr(0, 4), "ply\n");
   struct stat status {};
@@ -233,7 +233,7 @@ TEST(PlyMeshWriter, ReportsAFullDiskAndLeavesNothing) {
     try {
       PlyMeshWriter writer(path, {{"gray", true}}, false);
       add_grid(limit < 3000000 ? 200000 : 100000, 300000, &writer);
-      writer.finish(Progress());
+      writer.finish(prefilter::Run());
       FAIL();
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::kFile);

@@ -113,7 +113,7 @@ std::vector<float> sampled(const Pyramid& pyramid, const SamplingTable* table,
   std::vector<float> result(coordinates.size() * static_cast<std::size_t>(pyramid.channels));
   SampleOptions options;
   options.wrap = wrap;
-  options.threads = threads;
+  options.run = prefilter::Run(threads);
   sample(pyramid, table, coordinates, scales, options, result);
   return result;
 }

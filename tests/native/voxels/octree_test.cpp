@@ -38,7 +38,7 @@ Octree voxelized(const Mesh& mesh, int depth, std::optional<Box> bounds = kUnit)
 }
 
 std::vector<float> dense(const Octree& octree) {
-  return dense_values(octree, octree.depth, Progress(), 1);
+  return dense_values(octree, octree.depth, prefilter::Run(1));
 }
 
 std::string message_of(const std::function<void()>& act) {
@@ -122,8 +122,8 @@ TEST(Octree, PointsFindTheirCells) {
 TEST(Octree, CoarserCellsAreMeans) {
   const Octree octree = random_octree(7, 5);
   for (int depth = 0; depth < 5; ++depth) {
-    EXPECT_EQ(dense_values(coarsened(octree, depth), depth, Progress(), 1),
-              dense_values(octree, depth, Progress(), 1));
+    EXPECT_EQ(dense_values(coarsened(octree, depth), depth, prefilter::Run(1)),
+              dense_values(octree, depth, prefilter::Run(1)));
   }
 }
 
@@ -154,15 +154,16 @@ TEST(Combine, EqualsDenseOperationsForAnyDepths) {
     // Leaves that are neither full nor empty are split before the comparison.
     const auto dense_refined = [&](const Octree& octree) {
       Octree fine = octree;
-      fine.cells = refined(octree.cells, std::max(a.cells.depth(), b.cells.depth()), Progress(), 1);
-      return dense_values(fine, depth, Progress(), 1);
+      fine.cells =
+          refined(octree.cells, std::max(a.cells.depth(), b.cells.depth()), prefilter::Run(1));
+      return dense_values(fine, depth, prefilter::Run(1));
     };
     const std::vector<float> of_a = dense_refined(a);
     const std::vector<float> of_b = dense_refined(b);
     for (const SetOperation operation :
          {SetOperation::kUnion, SetOperation::kIntersection, SetOperation::kDifference}) {
-      const Octree result = combine(a, b, operation, Progress(), 1);
-      const std::vector<float> found = dense_values(result, depth, Progress(), 1);
+      const Octree result = combine(a, b, operation, prefilter::Run(1));
+      const std::vector<float> found = dense_values(result, depth, prefilter::Run(1));
       for (std::size_t i = 0; i < found.size(); ++i) {
         const float other = operation == SetOperation::kDifference ? 1.0F - of_b[i] : of_b[i];
         const float expected =
@@ -170,7 +171,8 @@ TEST(Combine, EqualsDenseOperationsForAnyDepths) {
         // Values of exactly 1/2 are moved by 1e-4.
         ASSERT_NEAR(found[i], expected, std::abs(expected - 0.5F) < 1e-4F ? 2e-4 : 0.0);
       }
-      EXPECT_EQ(found, dense_values(combine(a, b, operation, Progress(), 3), depth, Progress(), 1));
+      EXPECT_EQ(found, dense_values(combine(a, b, operation, prefilter::Run(3)), depth,
+                                    prefilter::Run(1)));
     }
   }
 }
@@ -178,7 +180,7 @@ TEST(Combine, EqualsDenseOperationsForAnyDepths) {
 TEST(Combine, UniformBlocksAreMerged) {
   const Octree box = voxelized(box_mesh({0.3, 0.3, 0.3}, {0.6, 0.6, 0.6}), 6);
   const Octree empty = combine(box, voxelized(box_mesh({0.1, 0.1, 0.1}, {0.9, 0.9, 0.9}), 6),
-                               SetOperation::kDifference, Progress(), 1);
+                               SetOperation::kDifference, prefilter::Run(1));
   EXPECT_EQ(volume(empty), 0.0);
   EXPECT_LE(empty.cells.cell_count(), 9U);
 }
@@ -191,9 +193,9 @@ TEST(Combine, CoincidentFacesLeaveNoFilm) {
     return values_at(octree, std::vector<Vector3>{{0.53, 0.5, 0.5}}, 1)[0];
   };
   ASSERT_NEAR(at_face(box), 0.5, 1e-6);
-  EXPECT_LT(at_face(combine(box, box, SetOperation::kDifference, Progress(), 1)), 0.5F);
-  EXPECT_LT(at_face(combine(box, beside, SetOperation::kIntersection, Progress(), 1)), 0.5F);
-  EXPECT_GT(at_face(combine(box, beside, SetOperation::kUnion, Progress(), 1)), 0.5F);
+  EXPECT_LT(at_face(combine(box, box, SetOperation::kDifference, prefilter::Run(1))), 0.5F);
+  EXPECT_LT(at_face(combine(box, beside, SetOperation::kIntersection, prefilter::Run(1))), 0.5F);
+  EXPECT_GT(at_face(combine(box, beside, SetOperation::kUnion, prefilter::Run(1))), 0.5F);
 }
 
 TEST(Combine, ResamplesOtherBounds) {
@@ -202,14 +204,14 @@ TEST(Combine, ResamplesOtherBounds) {
   const Octree a = voxelized(left, 6);
   // b has cells of the same size, shifted by whole cells, so that it is copied exactly.
   const Octree b = voxelized(right, 7, Box{{0.25, 0.0, 0.0}, {2.25, 2.0, 2.0}});
-  const Octree both = combine(a, b, SetOperation::kIntersection, Progress(), 1);
+  const Octree both = combine(a, b, SetOperation::kIntersection, prefilter::Run(1));
   EXPECT_NEAR(volume(both), 0.3 * 0.3 * 0.3, 2e-3);
   EXPECT_EQ(both.bounds.high[0], 1.0);
-  const Octree joined = combine(a, b, SetOperation::kUnion, Progress(), 1);
+  const Octree joined = combine(a, b, SetOperation::kUnion, prefilter::Run(1));
   EXPECT_NEAR(volume(joined), volume(a) + volume(b) - 0.027, 4e-3);
   EXPECT_GE(joined.bounds.high[0], 1.8);
   EXPECT_EQ(joined.cell_size(0, joined.depth), a.cell_size(0, a.depth));
-  const Octree cut = combine(a, b, SetOperation::kDifference, Progress(), 1);
+  const Octree cut = combine(a, b, SetOperation::kDifference, prefilter::Run(1));
   EXPECT_NEAR(volume(cut), volume(a) - 0.027, 2e-3);
 }
 
@@ -227,14 +229,14 @@ TEST(Combine, ContoursDoNotIntersectThemselves) {
     const Octree box = voxelized(box_mesh(low, low + size), 6 - trial % 3, bounds);
     for (const SetOperation operation :
          {SetOperation::kUnion, SetOperation::kIntersection, SetOperation::kDifference}) {
-      const Octree both = combine(ball, box, operation, Progress(), 1);
+      const Octree both = combine(ball, box, operation, prefilter::Run(1));
       for (const Interpolant interpolant : {Interpolant::kOccupancy, Interpolant::kPlane}) {
         ContourOptions options;
         options.interpolant = interpolant;
         options.clean_up = false;
         const TriangleMesh mesh = contour_tree(both.cells, both.bounds, options);
         EXPECT_TRUE(
-            intersecting_triangles({mesh.positions, mesh.triangles}, {}, Progress(), 1).empty())
+            intersecting_triangles({mesh.positions, mesh.triangles}, {}, prefilter::Run(1)).empty())
             << trial;
       }
     }
@@ -244,11 +246,11 @@ TEST(Combine, ContoursDoNotIntersectThemselves) {
 TEST(Resample, KeepsTheVolume) {
   const Box around = {{-0.31, -0.17, -0.4}, {1.2, 1.33, 1.11}};
   const Octree ball = voxelized(sphere_mesh({0.5, 0.5, 0.45}, 0.4, 20), 4);
-  EXPECT_EQ(dense(regridded(ball, kUnit, 4, Progress(), 1)), dense(ball));
+  EXPECT_EQ(dense(regridded(ball, kUnit, 4, prefilter::Run(1))), dense(ball));
   // The surface is assumed to be flat within each cell.
-  EXPECT_NEAR(volume(regridded(ball, around, 4, Progress(), 1)), volume(ball), 1e-5);
+  EXPECT_NEAR(volume(regridded(ball, around, 4, prefilter::Run(1))), volume(ball), 1e-5);
   const Octree noise = random_octree(30, 4);
-  EXPECT_NEAR(volume(regridded(noise, around, 4, Progress(), 1)), volume(noise), 5e-5);
+  EXPECT_NEAR(volume(regridded(noise, around, 4, prefilter::Run(1))), volume(noise), 5e-5);
 }
 
 // Whether a leaf above the finest depth has a neighbor with another value, by the dense cells.
@@ -278,7 +280,7 @@ bool is_beside_a_border(const Octree& octree, const std::vector<float>& cells, i
 TEST(Resample, CellsOnBothSidesOfABorderAreFine) {
   // Faces lie on cell borders before and after, so that all cells are uniform.
   const Octree box = voxelized(box_mesh({0.25, 0.5, 0.125}, {0.75, 1.0, 0.5}), 5);
-  const Octree made = regridded(box, {{-0.5, -0.5, -0.5}, {1.5, 1.5, 1.5}}, 6, Progress(), 1);
+  const Octree made = regridded(box, {{-0.5, -0.5, -0.5}, {1.5, 1.5, 1.5}}, 6, prefilter::Run(1));
   const std::vector<float> cells = dense(made);
   ASSERT_EQ(volume(made), volume(box));
   const auto visit = [&](const auto& self, int level, std::size_t block,
@@ -301,8 +303,8 @@ TEST(Resample, GridsEqualUpToRoundingHaveTheSameCells) {
   const Octree ball = voxelized(sphere_mesh({0.5, 0.5, 0.45}, 0.4, 20), 5);
   for (const double shift : {-1e-13, 1e-13}) {
     const Box nearly = {{shift, shift, shift}, {1.0 + shift, 1.0 + shift, 1.0 + shift}};
-    const Octree made = regridded(ball, nearly, 5, Progress(), 1);
-    const Octree same = regridded(ball, kUnit, 5, Progress(), 1);
+    const Octree made = regridded(ball, nearly, 5, prefilter::Run(1));
+    const Octree same = regridded(ball, kUnit, 5, prefilter::Run(1));
     EXPECT_EQ(made.cells.cell_count(), same.cells.cell_count());
   }
 }
@@ -310,7 +312,7 @@ TEST(Resample, GridsEqualUpToRoundingHaveTheSameCells) {
 TEST(Resample, MovesPlanesExactly) {
   const Mesh half = box_mesh({-1.0, -1.0, -1.0}, {2.0, 2.0, 0.4371});
   const Box around = {{-0.31, -0.17, -0.37}, {1.2, 1.33, 1.13}};
-  const Octree moved = regridded(voxelized(half, 4), around, 5, Progress(), 1);
+  const Octree moved = regridded(voxelized(half, 4), around, 5, prefilter::Run(1));
   const Box within = {{0.2, 0.2, 0.2}, {0.8, 0.8, 0.7}};
   EXPECT_NEAR(box_occupancy(moved, within), (0.4371 - 0.2) / 0.5, 1e-6);
   int fractions = 0;

@@ -35,7 +35,7 @@ struct Sheets {
 
   OpposedBricks bricks() const {
     const Box bounds = {{-10.0, -10.0, -10.0}, {20.0, 20.0, 20.0}};
-    return OpposedBricks({positions, triangles}, normals, 2.0, bounds, Progress(), 2);
+    return OpposedBricks({positions, triangles}, normals, 2.0, bounds, prefilter::Run(2));
   }
 };
 

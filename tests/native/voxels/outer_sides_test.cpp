@@ -29,7 +29,7 @@ TEST(OuterSides, WindingNumbersMatchNestedBalls) {
       triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     }
   }
-  const WindingNumbers winding({positions, triangles}, Progress(), 2);
+  const WindingNumbers winding({positions, triangles}, prefilter::Run(2));
   const std::function<float(const Vector3&)> mixed = [](const Vector3&) { return 0.5F; };
   const OuterSides sides(mixed, winding);
   std::mt19937 random(1);

@@ -27,7 +27,7 @@ CellTree uniform(float value) {
     tree.levels.push_back(std::move(level));
     blocks *= 8;
   }
-  update_means(&tree, Progress(), 1);
+  update_means(&tree, prefilter::Run(1));
   return tree;
 }
 
@@ -48,12 +48,12 @@ CellTree around(float value, int full) {
     at[static_cast<std::size_t>(k % 3)] += k < 3 ? 1 : -1;
     set(at, 0.9F, &tree);
   }
-  update_means(&tree, Progress(), 1);
+  update_means(&tree, prefilter::Run(1));
   return tree;
 }
 
 float filled(CellTree tree, const CellTree& thickened) {
-  fill_pinholes(thickened, kDepth, Progress(), 1, &tree);
+  fill_pinholes(thickened, kDepth, prefilter::Run(1), &tree);
   return occupancy_at(tree, kDepth, kCell);
 }
 
@@ -75,7 +75,7 @@ TEST(Pinholes, OnlyThickenedCellsAreFilled) {
 TEST(Pinholes, MeansIncludeFilledCells) {
   CellTree tree = around(0.45F, 6);
   const float before = tree.root;
-  fill_pinholes(uniform(0.1F), kDepth, Progress(), 1, &tree);
+  fill_pinholes(uniform(0.1F), kDepth, prefilter::Run(1), &tree);
   EXPECT_NEAR(tree.root - before, (0.505F - 0.45F) / 64.0F, 1e-6F);
 }
 

@@ -29,7 +29,7 @@ double processor_seconds() {
 }
 
 // Longest time without a report by `work`, in seconds.
-double longest_gap(const std::function<void(const Progress&)>& work) {
+double longest_gap(const std::function<void(const prefilter::Run&)>& work) {
   double longest = 0.0;
   double last = processor_seconds();
   const auto note = [&] {
@@ -37,7 +37,7 @@ double longest_gap(const std::function<void(const Progress&)>& work) {
     longest = std::max(longest, now - last);
     last = now;
   };
-  work(Progress([&](double) {
+  work(prefilter::Run([&](double) {
     note();
     return true;
   }));
@@ -62,8 +62,8 @@ class ReportGaps : public ::testing::Test {
     if (kIsSlowed) return;
     mesh = testing::sphere_mesh({0.5, 0.5, 0.5}, 0.4, 450);
     for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
-    sphere = voxelize(input(), options(Progress()));
-    other = voxelize(input(), options(Progress(), 0.01));
+    sphere = voxelize(input(), options(prefilter::Run()));
+    other = voxelize(input(), options(prefilter::Run(), 0.01));
   }
   static void TearDownTestSuite() {
     mesh = {};
@@ -73,12 +73,11 @@ class ReportGaps : public ::testing::Test {
   }
 
   static InputMesh input() { return {mesh.positions, triangles}; }
-  static VoxelizeOptions options(const Progress& progress, double offset = 0.0) {
+  static VoxelizeOptions options(const prefilter::Run& run, double offset = 0.0) {
     VoxelizeOptions result;
     result.depth = kDepth;
     result.bounds = Box{{offset, offset, offset}, {offset + 1.0, offset + 1.0, offset + 1.0}};
-    result.threads = 1;
-    result.progress = progress;
+    result.run = run.with_threads(1);
     return result;
   }
 
@@ -89,7 +88,7 @@ class ReportGaps : public ::testing::Test {
 };
 
 TEST_F(ReportGaps, OfVoxelize) {
-  EXPECT_LT(longest_gap([](const Progress& progress) { voxelize(input(), options(progress)); }),
+  EXPECT_LT(longest_gap([](const prefilter::Run& run) { voxelize(input(), options(run)); }),
             kLongest);
 }
 
@@ -98,9 +97,9 @@ TEST_F(ReportGaps, OfContoursAndCleanUp) {
     ContourOptions contour;
     contour.interpolant = interpolant;
     contour.clean_up = true;
-    contour.threads = 1;
-    const double gap = longest_gap([&](const Progress& progress) {
-      contour.progress = progress;
+    contour.run = prefilter::Run(1);
+    const double gap = longest_gap([&](const prefilter::Run& run) {
+      contour.run = run;
       contour_tree(sphere.cells, sphere.bounds, contour);
     });
     EXPECT_LT(gap, kLongest);
@@ -108,18 +107,17 @@ TEST_F(ReportGaps, OfContoursAndCleanUp) {
 }
 
 TEST_F(ReportGaps, OfSetOperations) {
-  EXPECT_LT(longest_gap([](const Progress& progress) {
-              combine(sphere, other, SetOperation::kUnion, progress, 1);
+  EXPECT_LT(longest_gap([](const prefilter::Run& run) {
+              combine(sphere, other, SetOperation::kUnion, run.with_threads(1));
             }),
             kLongest);
 }
 
 TEST_F(ReportGaps, OfHoles) {
   const std::span<const std::array<std::int64_t, 3>> all = triangles;
-  EXPECT_LT(longest_gap([&](const Progress& progress) {
+  EXPECT_LT(longest_gap([&](const prefilter::Run& run) {
               CloseHolesOptions holes;
-              holes.threads = 1;
-              holes.progress = progress;
+              holes.run = run.with_threads(1);
               close_holes({mesh.positions, all.subspan(0, all.size() - 7)}, holes);
             }),
             kLongest);
@@ -138,18 +136,18 @@ TEST_F(ReportGaps, OfALongHole) {
   positions.push_back({0.0, 0.0, 2.0});
   for (auto& face : faces) std::swap(face[1], face[2]);
   for (auto& position : positions) position[2] *= -0.5;
-  EXPECT_LT(longest_gap([&](const Progress& progress) {
+  EXPECT_LT(longest_gap([&](const prefilter::Run& run) {
               CloseHolesOptions holes;
-              holes.threads = 1;
-              holes.progress = progress;
+              holes.run = run.with_threads(1);
               EXPECT_GT(close_holes({positions, faces}, holes).triangles.size(), 10000U);
             }),
             kLongest);
 }
 
 TEST_F(ReportGaps, OfNearestPoints) {
-  EXPECT_LT(longest_gap([](const Progress& progress) {
-              nearest_points(std::span(mesh.positions).subspan(0, 50000), input(), progress, 1);
+  EXPECT_LT(longest_gap([](const prefilter::Run& run) {
+              nearest_points(std::span(mesh.positions).subspan(0, 50000), input(),
+                             run.with_threads(1));
             }),
             kLongest);
 }

@@ -44,7 +44,7 @@ CellTree with_neck(float value) {
   set({0, 1, 1}, 1.0F, &tree);
   set(kNeck, value, &tree);
   set({2, 1, 1}, 1.0F, &tree);
-  update_means(&tree, Progress(), 1);
+  update_means(&tree, prefilter::Run(1));
   return tree;
 }
 
@@ -70,8 +70,8 @@ const std::vector<std::array<double, 2>> kApart = {{0.0, 1.3}, {1.7, 3.0}};
 
 CellTree opened(CellTree tree, const TriangleMesh& mesh, const CellTree& thickened = {},
                 double unit = 1.0) {
-  const WindingNumbers winding({mesh.positions, mesh.triangles}, Progress(), 1);
-  open_slits(winding, unit, thickened, kDepth, Progress(), 1, &tree);
+  const WindingNumbers winding({mesh.positions, mesh.triangles}, prefilter::Run(1));
+  open_slits(winding, unit, thickened, kDepth, prefilter::Run(1), &tree);
   return tree;
 }
 

@@ -166,7 +166,7 @@ TEST(D4Transform, DetailsAreThePrintedSums) {
       for (int x = -2; x < 4; ++x) needed[kDepth].push_back({x, y, z});
     }
   }
-  const std::vector<Means> means = transform(std::move(differences), needed, Progress(), 1);
+  const std::vector<Means> means = transform(std::move(differences), needed, prefilter::Run(1));
   for (int j = 0; j < kDepth; ++j) {
     for (const std::array<int, 3>& k :
          {std::array{0, 0, 0}, {-1, 0, 1}, {1, 1, 0}, {(1 << j) - 1, 0, -1}}) {

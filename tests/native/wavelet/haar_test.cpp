@@ -31,7 +31,7 @@ TEST(Haar, SynthesisClampsAndTakesRoundingBack) {
   tree.levels.resize(1);
   tree.levels[0].blocks.push_back({0.0F, 0.500001F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F});
   tree.levels[0].split.push_back(0);
-  const CellTree cells = synthesise(tree, -1, Progress(), 1);
+  const CellTree cells = synthesise(tree, -1, prefilter::Run(1));
   for (std::size_t o = 0; o < 8; ++o) {
     EXPECT_EQ(cells.levels[0].blocks[0][o], o % 2 == 0 ? 1.0F : 0.0F);
   }

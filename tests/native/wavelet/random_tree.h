@@ -35,7 +35,7 @@ inline CellTree random_tree(unsigned seed, int depth) {
     link_blocks(&level);
     tree.levels.push_back(std::move(level));
   }
-  update_means(&tree, Progress(), 1);
+  update_means(&tree, prefilter::Run(1));
   return tree;
 }
 

@@ -79,7 +79,7 @@ void for_leaves(const CellTree& tree,
 TEST(Refined, LeavesKeepTheirOccupancy) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const CellTree tree = random_tree(seed, 4);
-    const CellTree fine = refined(tree, 6, Progress(), 1);
+    const CellTree fine = refined(tree, 6, prefilter::Run(1));
     EXPECT_EQ(fine.depth(), 6);
     for_leaves(tree, [&](int depth, const LeafPlace& at, float value) {
       EXPECT_NEAR(occupancy_at(fine, depth, at), value, 1e-6);
@@ -89,8 +89,8 @@ TEST(Refined, LeavesKeepTheirOccupancy) {
 
 TEST(Refined, ThreadsChangeNothing) {
   const CellTree tree = random_tree(7, 5);
-  const CellTree one = refined(tree, 6, Progress(), 1);
-  const CellTree many = refined(tree, 6, Progress(), 5);
+  const CellTree one = refined(tree, 6, prefilter::Run(1));
+  const CellTree many = refined(tree, 6, prefilter::Run(5));
   ASSERT_EQ(one.levels.size(), many.levels.size());
   for (std::size_t k = 0; k < one.levels.size(); ++k) {
     EXPECT_EQ(one.levels[k].blocks, many.levels[k].blocks);
@@ -119,7 +119,7 @@ TEST(Refined, APlaneStaysAPlane) {
   const double offset = dot({0.47, 0.52, 0.51}, normal);
   const CellTree tree = sampled_tree(
       4, [&](const Vector3& middle) { return share_below(middle, 1.0 / 16.0, normal, offset); });
-  const CellTree fine = refined(tree, 6, Progress(), 1);
+  const CellTree fine = refined(tree, 6, prefilter::Run(1));
   double worst = 0.0;
   int count = 0;
   for_leaves(fine, [&](int depth, const LeafPlace& at, float value) {
@@ -146,7 +146,7 @@ TEST(Refined, ABallIsAsRoundAsItsCellsLet) {
     return dot(q, q) < kRadius * kRadius;
   };
   const CellTree tree = sampled_tree(5, share_of(1.0 / 32.0, inside));
-  const CellTree fine = refined(tree, 6, Progress(), 1);
+  const CellTree fine = refined(tree, 6, prefilter::Run(1));
   const auto expected = share_of(1.0 / 64.0, inside);
   double worst = 0.0;
   double sum = 0.0;
@@ -167,7 +167,7 @@ TEST(Refined, FullBesideEmptyIsSplit) {
   // Half of the root, in cells of depth 2: all are full or empty.
   const CellTree tree = sampled_tree(2, [](const Vector3& p) { return p[0] < 0.5 ? 1.0 : 0.0; });
   EXPECT_FALSE(has_coarse_surface(tree));
-  const CellTree fine = refined(tree, 5, Progress(), 1);
+  const CellTree fine = refined(tree, 5, prefilter::Run(1));
   for_leaves(fine, [&](int depth, const LeafPlace& at, float value) {
     EXPECT_EQ(value, at[0] < 1 << (depth - 1) ? 1.0F : 0.0F);
     const bool is_beside = at[0] == 1 << (depth - 1) || at[0] + 1 == 1 << (depth - 1);
@@ -178,7 +178,7 @@ TEST(Refined, FullBesideEmptyIsSplit) {
 TEST(Refined, FineLeavesDoNotChange) {
   const CellTree tree = sampled_tree(
       4, share_of(1.0 / 16.0, [](const Vector3& p) { return p[0] + p[1] + 0.3 * p[2] < 1.1; }));
-  const CellTree same = refined(tree, 4, Progress(), 1);
+  const CellTree same = refined(tree, 4, prefilter::Run(1));
   EXPECT_FALSE(has_coarse_surface(tree));
   for_leaves(tree, [&](int depth, const LeafPlace& at, float value) {
     EXPECT_EQ(occupancy_at(same, depth, at), value);

@@ -78,7 +78,7 @@ CellTree full_tree(int depth) {
     link_blocks(&level);
     tree.levels.push_back(std::move(level));
   }
-  update_means(&tree, Progress(), 1);
+  update_means(&tree, prefilter::Run(1));
   return tree;
 }
 

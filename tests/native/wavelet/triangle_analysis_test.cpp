@@ -19,12 +19,12 @@ using testing::Mesh;
 using testing::sphere_mesh;
 
 std::vector<float> occupancies(const Mesh& mesh, int depth, int shown_depth = -1, int threads = 1) {
-  HaarTree coefficients = analyze_triangles(mesh.view(), depth, Progress(), threads);
-  Octree octree{synthesise(std::move(coefficients), shown_depth, Progress(), threads),
+  HaarTree coefficients = analyze_triangles(mesh.view(), depth, prefilter::Run(threads));
+  Octree octree{synthesise(std::move(coefficients), shown_depth, prefilter::Run(threads)),
                 {{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}},
                 depth,
                 {}};
-  return dense_values(octree, shown_depth < 0 ? depth : shown_depth, Progress(), 1);
+  return dense_values(octree, shown_depth < 0 ? depth : shown_depth, prefilter::Run(1));
 }
 
 // The largest difference from a box's occupancies in closed form.
@@ -134,7 +134,7 @@ TEST(TriangleAnalysis, AMissingFaceLeavesTheMeanOfTheRoot) {
     Mesh mesh = box_mesh(low, high);
     const auto first = mesh.triangles.begin() + static_cast<std::ptrdiff_t>(2 * face);
     mesh.triangles.erase(first, first + 2);
-    EXPECT_NEAR(analyze_triangles(mesh.view(), 5, Progress(), 1).mean, volume, 1e-12) << face;
+    EXPECT_NEAR(analyze_triangles(mesh.view(), 5, prefilter::Run(1)).mean, volume, 1e-12) << face;
   }
 }
 
@@ -187,8 +187,8 @@ TEST(TriangleAnalysis, FarFromAHoleLittleChanges) {
 
 TEST(TriangleAnalysis, CanBeStopped) {
   const Mesh mesh = sphere_mesh({0.5, 0.5, 0.5}, 0.4, 200);
-  const Progress stop([](double) { return false; });
-  EXPECT_THROW(analyze_triangles(mesh.view(), 8, stop, 2), Error);
+  const prefilter::Run stop([](double) { return false; });
+  EXPECT_THROW(analyze_triangles(mesh.view(), 8, stop.with_threads(2)), Error);
 }
 
 }  // namespace

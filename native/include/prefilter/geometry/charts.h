@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -26,6 +26,6 @@ using CornerUvs = std::span<const std::array<std::array<float, 2>, 3>>;
 /// Throws Error for an invalid mesh, and for a map with a different number of triangles;
 /// Error(kCancelled).
 std::vector<std::int32_t> find_charts(const InputMesh& mesh, std::span<const CornerUvs> maps,
-                                      const Progress& progress, int threads);
+                                      const Run& run);
 
 }  // namespace prefilter

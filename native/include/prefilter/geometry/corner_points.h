@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/geometry/nearest.h"
 
 namespace prefilter {
@@ -29,6 +29,6 @@ struct CornerPoints {
 /// not match the triangles, and for an origin out of range; Error(kCancelled).
 CornerPoints find_corner_points(const InputMesh& surface, std::span<const std::int32_t> origins,
                                 const InputMesh& mesh, std::span<const std::int32_t> labels,
-                                const Progress& progress, int threads);
+                                const Run& run);
 
 }  // namespace prefilter

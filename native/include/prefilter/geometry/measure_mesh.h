@@ -4,7 +4,7 @@
 #pragma once
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -16,6 +16,6 @@ struct MeshMeasures {
 
 /// Measures a mesh in one pass over the triangles, without copying them. The result is the same for
 /// any number of threads. Throws Error for an invalid mesh; Error(kCancelled).
-MeshMeasures measure_mesh(const InputMesh& mesh, const Progress& progress, int threads);
+MeshMeasures measure_mesh(const InputMesh& mesh, const Run& run);
 
 }  // namespace prefilter

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -27,27 +27,24 @@ class NearestPoints {
   /// Triangles of zero area act as segments or points. Throws Error for a mesh without triangles,
   /// an index out of range, and for positions that are not finite or above 1e150, whose squares
   /// would overflow; Error(kCancelled).
-  NearestPoints(const InputMesh& mesh, const Progress& progress, int threads);
+  NearestPoints(const InputMesh& mesh, const Run& run);
 
   /// The same with a label per triangle, for searches restricted to one label. Throws Error unless
   /// there are as many labels as triangles.
-  NearestPoints(const InputMesh& mesh, std::span<const std::int32_t> labels,
-                const Progress& progress, int threads);
+  NearestPoints(const InputMesh& mesh, std::span<const std::int32_t> labels, const Run& run);
   ~NearestPoints();
 
   /// Finds the nearest point for each query; at equal distances, on the triangle with the lowest
   /// index. Searches are slower the more triangles have boxes closer than the nearest point, as in
   /// a stack, or around a common vertex. The result is the same for any number of threads. Throws
   /// Error for query points like for positions above; Error(kCancelled).
-  std::vector<SurfacePoint> find(std::span<const Vector3> points, const Progress& progress,
-                                 int threads) const;
+  std::vector<SurfacePoint> find(std::span<const Vector3> points, const Run& run) const;
 
   /// The same, but each point only considers triangles with the label of its triangle in `origins`;
   /// nearby origins make it faster. Throws Error for an index out of range, or unless there is one
   /// per point.
   std::vector<SurfacePoint> find_on(std::span<const Vector3> points,
-                                    std::span<const std::int32_t> origins, const Progress& progress,
-                                    int threads) const;
+                                    std::span<const std::int32_t> origins, const Run& run) const;
 
  private:
   class Tree;
@@ -56,6 +53,6 @@ class NearestPoints {
 
 /// The same in one step, for a single search.
 std::vector<SurfacePoint> nearest_points(std::span<const Vector3> points, const InputMesh& mesh,
-                                         const Progress& progress, int threads);
+                                         const Run& run);
 
 }  // namespace prefilter

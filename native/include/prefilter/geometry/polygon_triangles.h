@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -31,6 +31,6 @@ namespace prefilter {
 std::vector<std::array<std::int64_t, 3>> triangulate_polygons(const PositionView& positions,
                                                               std::span<const std::int64_t> corners,
                                                               std::span<const std::int64_t> sizes,
-                                                              const Progress& progress);
+                                                              const Run& run);
 
 }  // namespace prefilter

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "prefilter/base/names.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/geometry/surface.h"
 
 namespace prefilter {
@@ -79,7 +79,7 @@ struct SubdivisionOptions {
   SubdivisionBoundary boundary = SubdivisionBoundary::kEdgeAndCorner;
   UvInterpolation uv_interpolation = UvInterpolation::kPreserveBoundaries;
   int level = 3;  // 1 to 10
-  Progress progress;
+  Run run;
 };
 
 /// The limit surface of a mesh: refines the faces `level` times and moves vertices to the limit of

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -47,7 +47,7 @@ struct TexturedMesh {
 /// the mean of its three corners' weights. Throws Error for a mesh without triangles, an index out
 /// of range, positions or texture coordinates that are not finite, negative or non-finite weights,
 /// and positions or weights so large that an area overflows; Error(kCancelled).
-Surface make_surface(const TexturedMesh& textured, const Progress& progress = Progress());
+Surface make_surface(const TexturedMesh& textured, const Run& run = Run());
 
 /// The rows of a 3 x 4 matrix that maps (x, y, z, 1) to a point.
 using AffineMap = std::array<std::array<double, 4>, 3>;

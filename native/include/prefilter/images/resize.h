@@ -4,7 +4,7 @@
 #pragma once
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/images/resize_filter.h"
 
@@ -25,8 +25,7 @@ struct ResizeOptions {
   // multiplied by it. They are multiplied, filtered and divided again. Colors then stay within the
   // range of the visible ones, and alpha in [0, 1]. True: every channel is filtered independently.
   bool premultiplied = false;
-  int threads = 0;  // 0 = all processors
-  Progress progress;
+  Run run;
 };
 
 /// Resizes the image to width x height texels, 1 to 2^20 along each side. An image of the same size

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
 #include "prefilter/base/rigid_motion.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -25,8 +25,7 @@ struct AlignOptions {
   /// bounding box.
   std::optional<double> reach;
   int iterations = 40;  // at most
-  Progress progress;
-  int threads = 0;
+  Run run;
 };
 
 struct Alignment {

@@ -15,8 +15,8 @@
 
 namespace prefilter {
 
-/// Which of the returns (echoes) of a laser pulse to keep. A pulse may pass leaves on its way to
-/// the ground.
+/// Which of the returns (echoes) of a laser cancel_check to keep. A cancel_check may pass leaves on
+/// its way to the ground.
 enum class Returns { kAll, kFirst, kLast, kOnly };
 
 inline constexpr Named<Returns> kReturnsNames[] = {

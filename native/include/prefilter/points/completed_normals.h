@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -19,6 +19,6 @@ namespace prefilter {
 /// Error(kCancelled).
 std::vector<Vector3> completed_normals(std::span<const Vector3> points,
                                        std::span<const Vector3> normals, int neighbours,
-                                       const Progress& progress, int threads);
+                                       const Run& run);
 
 }  // namespace prefilter

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -17,7 +17,6 @@ namespace prefilter {
 /// threads. Throws Error for no points, more than 2^31 - 1, or a different number of normals;
 /// Error(kCancelled).
 std::vector<Vector3> directed_normals(std::span<const Vector3> points,
-                                      std::span<const Vector3> normals, const Progress& progress,
-                                      int threads);
+                                      std::span<const Vector3> normals, const Run& run);
 
 }  // namespace prefilter

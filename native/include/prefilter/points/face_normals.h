@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/range_grid.h"
 
 namespace prefilter {
@@ -17,7 +17,7 @@ namespace prefilter {
 /// Unit normal of each vertex: the area-weighted mean of its triangles' normals. Zero for a vertex
 /// without triangles, or whose triangles have no area or positions that are not finite. Throws
 /// Error for an invalid vertex index; Error(kCancelled).
-std::vector<Vector3> mesh_normals(const InputMesh& mesh, const Progress& progress);
+std::vector<Vector3> mesh_normals(const InputMesh& mesh, const Run& run);
 
 /// Normals and weights derived from a scanner's grid.
 struct GridNormals {
@@ -34,6 +34,6 @@ struct GridNormals {
 /// along -z. Throws Error for an invalid point index, a grid whose size does not match its rows and
 /// columns, or a viewpoint that is not finite; Error(kCancelled).
 GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
-                         const std::optional<Vector3>& viewpoint, const Progress& progress);
+                         const std::optional<Vector3>& viewpoint, const Run& run);
 
 }  // namespace prefilter

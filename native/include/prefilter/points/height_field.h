@@ -6,7 +6,7 @@
 #include <span>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -15,6 +15,6 @@ namespace prefilter {
 /// as trees and houses in a landscape. False for fewer than 100 points; points that are not finite
 /// are ignored. Up to a million points, the result is the same, up to rounding, for any order of
 /// the points; larger clouds are sampled. Throws Error(kCancelled).
-bool is_height_field(std::span<const Vector3> points, const Progress& progress);
+bool is_height_field(std::span<const Vector3> points, const Run& run);
 
 }  // namespace prefilter

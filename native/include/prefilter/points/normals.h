@@ -8,7 +8,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/names.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -40,6 +40,6 @@ inline constexpr Named<NormalSide> kNormalSides[] = {{"outward", NormalSide::kOu
 /// Error(kCancelled).
 std::vector<Vector3> estimate_normals(std::span<const Vector3> points, int neighbours,
                                       std::span<const Vector3> viewpoints, NormalSide side,
-                                      const Progress& progress, int threads);
+                                      const Run& run);
 
 }  // namespace prefilter

@@ -7,7 +7,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/names.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -30,6 +30,6 @@ inline constexpr Named<OriginRole> kOriginRoles[] = {{"none", OriginRole::kNone}
 /// than 100 points, and views narrower than a twentieth of their distance; points that are not
 /// finite are ignored. Up to a million points, the result is the same, up to rounding, for any
 /// order of the points, and for any number of threads. Throws Error(kCancelled).
-OriginRole origin_role(std::span<const Vector3> points, const Progress& progress, int threads);
+OriginRole origin_role(std::span<const Vector3> points, const Run& run);
 
 }  // namespace prefilter

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -20,6 +20,6 @@ namespace prefilter {
 /// same for any number of threads. Throws Error for more than 2^31 - 1 points, neighbours outside 3
 /// to 1000, or a factor that is not above 1 and finite; Error(kCancelled).
 std::vector<bool> find_outliers(std::span<const Vector3> points, int neighbours, double factor,
-                                const Progress& progress, int threads);
+                                const Run& run);
 
 }  // namespace prefilter

@@ -9,7 +9,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/geometry/surface.h"
 
@@ -23,8 +23,7 @@ struct PaintOptions {
   double smoothing = 0.05;
   /// Points farther from the surface are ignored; by default all points are used.
   std::optional<double> reach;
-  Progress progress;
-  int threads = 0;
+  Run run;
 };
 
 struct PaintedTexture {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/point_source.h"
 
 namespace prefilter {
@@ -24,6 +24,6 @@ struct PhantomPlace {
 /// rounded coordinates produce no phantoms, as the neighbors then have as many points. Sorted by
 /// coordinates; independent of the order of the points. Reads the source once, and again if there
 /// are candidates. Throws Error(kCancelled).
-std::vector<PhantomPlace> find_phantoms(PointSource* source, const Progress& progress, int threads);
+std::vector<PhantomPlace> find_phantoms(PointSource* source, const Run& run);
 
 }  // namespace prefilter

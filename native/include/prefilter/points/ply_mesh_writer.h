@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "prefilter/base/point_attribute.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/mesh_sink.h"
 
 namespace prefilter {
@@ -36,7 +36,7 @@ class PlyMeshWriter final : public MeshSink {
 
   /// Moves the file to its target. Reports progress from 0 to 1; cancellation leaves the target
   /// unchanged.
-  void finish(const Progress& progress);
+  void finish(const Run& run);
 
  private:
   class Files;

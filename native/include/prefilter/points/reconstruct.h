@@ -12,7 +12,7 @@
 
 #include "prefilter/base/names.h"
 #include "prefilter/base/point_attribute.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/mesh_sink.h"
 #include "prefilter/points/phantoms.h"
 #include "prefilter/points/point_source.h"
@@ -66,8 +66,7 @@ struct ReconstructOptions {
   // Bytes, not counting the memory of the source and the sink; 0 requests the minimum.
   std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();
   std::string folder;  // for temporary files; "": the system's
-  int threads = 0;     // 0: all processors
-  Progress progress;
+  Run run;
 };
 
 /// Points that were excluded as invalid, counted by the first reason that applies.

@@ -9,7 +9,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/names.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -32,6 +32,6 @@ inline constexpr Named<Subsampling> kSubsamplingNames[] = {
 /// - 1 points, or a spacing that is not above 0, not finite, or at most 1e-15 of the points'
 /// extent; Error(kCancelled).
 std::vector<std::int64_t> subsample(std::span<const Vector3> points, double spacing,
-                                    Subsampling method, const Progress& progress, int threads);
+                                    Subsampling method, const Run& run);
 
 }  // namespace prefilter

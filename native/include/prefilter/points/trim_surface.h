@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/mesh_sink.h"
 
 namespace prefilter {
@@ -49,6 +49,6 @@ struct TrimmedMesh {
 TrimReport trim_surface(std::span<const Vector3> positions,
                         std::span<const std::array<std::int32_t, 3>> triangles,
                         std::span<const float> attributes, std::size_t width,
-                        const TrimOptions& options, const Progress& progress, TrimmedMesh* result);
+                        const TrimOptions& options, const Run& run, TrimmedMesh* result);
 
 }  // namespace prefilter

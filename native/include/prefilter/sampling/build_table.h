@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/sampling/sampling_table.h"
 
 namespace prefilter {
@@ -13,8 +13,7 @@ namespace prefilter {
 struct BuildTableOptions {
   TableShape shape;
   bool certify = false;  // whether to prove a bound on the distance of the sets from the optimum
-  Progress progress;
-  int threads = 0;
+  Run run;
 };
 
 /// Searches, by exchanging texels from fixed starts, for the sets and weights with the lowest error

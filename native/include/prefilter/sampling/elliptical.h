@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/sampling/sample_places.h"
 
@@ -15,8 +15,7 @@ namespace prefilter {
 
 struct EllipticalOptions {
   WrapModes wrap;
-  int threads = 0;  // 0 = all processors
-  Progress progress;
+  Run run;
 };
 
 /// Means of the texels of an image, with any number of channels, weighted by the Gaussian exp(-pi

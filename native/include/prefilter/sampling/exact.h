@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/images/kernel.h"
 #include "prefilter/sampling/sample_places.h"
@@ -16,8 +16,7 @@ namespace prefilter {
 struct ExactOptions {
   const Kernel* kernel = find_kernel("lanczos2");
   WrapModes wrap;
-  int threads = 0;  // 0 = all processors
-  Progress progress;
+  Run run;
 };
 
 /// Writes the kernel-weighted mean of the image around a place, one value per channel, to `values`:

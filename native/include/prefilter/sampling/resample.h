@@ -6,7 +6,7 @@
 #include <array>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/images/kernel.h"
 #include "prefilter/sampling/sample_places.h"
@@ -43,7 +43,7 @@ struct ResampleOptions {
   // See ResizeOptions. The border wrap mode makes opaque images transparent at their edges.
   bool premultiplied = false;
   int threads = 0;  // 0 = all processors
-  Progress progress;
+  Run run;
 };
 
 /// The image transformed to width x height pixels, 1 to 2^20 along each side. Pixels beyond the

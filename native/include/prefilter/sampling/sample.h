@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/sampling/pyramid.h"
 #include "prefilter/sampling/sample_places.h"
@@ -15,8 +15,7 @@ namespace prefilter {
 
 struct SampleOptions {
   WrapModes wrap;
-  int threads = 0;  // 0 = all processors
-  Progress progress;
+  Run run;
 };
 
 /// Writes samples at coordinates (u, v), which span the image from 0 to 1, to `result`, with

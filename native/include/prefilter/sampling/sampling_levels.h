@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/images/kernel.h"
 
@@ -19,8 +19,7 @@ struct SamplingLevelsOptions {
   // False: the last of two or four channels is coverage in [0, 1]; the others are multiplied by it
   // first. The levels are premultiplied, as samples are sums of premultiplied texels.
   bool premultiplied = false;
-  int threads = 0;  // 0 = all processors
-  Progress progress;
+  Run run;
 };
 
 /// Level k is the image filtered by the kernel with a unit of one texel of the level, 2^k texels of

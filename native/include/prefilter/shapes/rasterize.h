@@ -14,7 +14,7 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/names.h"
 #include "prefilter/base/outline.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/shapes/paint.h"
 
 namespace prefilter {
@@ -62,8 +62,7 @@ struct RasterOptions {
   Overlap overlap = Overlap::kCover;
   /// Values where no shape is; empty for 0.
   std::vector<float> background;
-  int threads = 0;
-  Progress progress;
+  Run run;
 };
 
 /// Renders shapes; each pixel is the filtered mean around its center. Throws Error for shapes with

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "prefilter/base/outline.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -25,7 +25,6 @@ Outline resolve(const Outline& outline, FillRule rule, double tolerance = kOutli
 /// The result of `resolve`, or nothing if the outline is already resolved. Open contours count as
 /// closed, and contours without extent are ignored.
 std::optional<Outline> resolved(const Outline& outline, FillRule rule,
-                                double tolerance = kOutlineTolerance,
-                                const Progress& progress = {});
+                                double tolerance = kOutlineTolerance, const Run& run = {});
 
 }  // namespace prefilter

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/textures/block_effort.h"
 #include "prefilter/textures/block_layout.h"
 
@@ -22,7 +22,6 @@ struct BlockOptions {
   /// For ASTC: red, green and blue are sRGB-encoded. Decoders of such blocks round differently.
   bool is_srgb = false;
   BlockEffort effort = BlockEffort::kNormal;
-  int threads = 0;  // 0 = one per processor
 };
 
 /// The bits of an IEEE 754 half float.
@@ -34,10 +33,10 @@ using HalfBits = std::uint16_t;
 ///
 /// Throws Error if a side is less than 1, if the format stores floats, or if `progress` cancels.
 std::vector<std::uint8_t> compress_blocks(const std::uint8_t* rgba, int width, int height,
-                                          const BlockOptions& options, const Progress& progress);
+                                          const BlockOptions& options, const Run& run);
 
 /// The same for the float formats, from finite half floats. Negative values become 0.
 std::vector<std::uint8_t> compress_blocks(const HalfBits* rgba, int width, int height,
-                                          const BlockOptions& options, const Progress& progress);
+                                          const BlockOptions& options, const Run& run);
 
 }  // namespace prefilter

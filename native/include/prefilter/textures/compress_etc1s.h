@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/textures/block_effort.h"
 
 namespace prefilter {
@@ -25,7 +25,6 @@ struct Etc1sOptions {
   /// Whether to weight errors perceptually; otherwise all channels count equally.
   bool is_color = true;
   BlockEffort effort = BlockEffort::kNormal;
-  int threads = 0;  // 0 = one per processor
 };
 
 /// Interleaved RGBA bytes.
@@ -58,6 +57,6 @@ struct Etc1sTexture {
 /// together, `quality` is out of range, or `progress` cancels. Cancellation is only checked between
 /// the two stages.
 Etc1sTexture compress_etc1s(std::span<const Etc1sImage> levels, const Etc1sOptions& options,
-                            const Progress& progress);
+                            const Run& run);
 
 }  // namespace prefilter

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/textures/block_layout.h"
 #include "prefilter/textures/compress_blocks.h"
 
@@ -17,7 +17,6 @@ struct DecodeOptions {
   BlockFormat format = BlockFormat::kBc1;
   /// For ASTC: red, green and blue are sRGB-encoded. Decoders of such blocks round differently.
   bool is_srgb = false;
-  int threads = 0;  // 0 = one per processor
 };
 
 /// Decodes blocks in the order of compress_blocks to width x height interleaved RGBA bytes. Color
@@ -26,12 +25,11 @@ struct DecodeOptions {
 /// Throws Error if a side is less than 1, if the number of bytes does not match the size, if the
 /// format stores floats, if a kUastc block is damaged, or if `progress` cancels.
 std::vector<std::uint8_t> decode_blocks(std::span<const std::uint8_t> blocks, int width, int height,
-                                        const DecodeOptions& options, const Progress& progress);
+                                        const DecodeOptions& options, const Run& run);
 
 /// The same for the float formats; a missing alpha becomes 1.
 std::vector<HalfBits> decode_half_blocks(std::span<const std::uint8_t> blocks, int width,
-                                         int height, const DecodeOptions& options,
-                                         const Progress& progress);
+                                         int height, const DecodeOptions& options, const Run& run);
 
 /// The codebooks shared by all levels of an ETC1S texture (KTX 2.0, section 4.1, BasisLZ).
 struct Etc1sCodebooks {
@@ -55,6 +53,6 @@ struct Etc1sLevel {
 /// Throws Error if a side is less than 1, if any of the data is damaged, or if `progress` cancels.
 std::vector<std::vector<std::uint8_t>> decode_etc1s(const Etc1sCodebooks& codebooks,
                                                     std::span<const Etc1sLevel> levels,
-                                                    const Progress& progress);
+                                                    const Run& run);
 
 }  // namespace prefilter

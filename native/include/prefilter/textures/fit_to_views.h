@@ -7,7 +7,7 @@
 
 #include "prefilter/base/image.h"
 #include "prefilter/base/names.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/geometry/surface.h"
 #include "prefilter/textures/mipmaps.h"
@@ -37,8 +37,7 @@ struct ViewFitOptions {
   double steadiness = 0.5;
   // Factor on the number of views, and so on the time; above 0, up to 100.
   double effort = 1.0;
-  int threads = 0;  // 0 = all processors
-  Progress progress;
+  Run run;
 };
 
 /// Fits levels 1 and up to the colors that pixels should show, on average over views from all

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/geometry/surface.h"
 
@@ -16,8 +16,7 @@ struct CoverageOptions {
   double threshold = 0.5;  // texels with at least this alpha are visible; above 0, at most 1
   WrapModes wrap;
   bool premultiplied = false;  // whether colors are multiplied by alpha, and must change with it
-  int threads = 0;             // 0 = all processors
-  Progress progress;
+  Run run;
 };
 
 /// Returns levels 1 and up with their alpha adjusted to keep the coverage of level 0. Coverage is

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/geometry/surface.h"
 #include "prefilter/textures/reader.h"
@@ -23,6 +23,6 @@ namespace prefilter {
 std::vector<double> mipmap_error(const std::vector<ImageView>& levels, const ImageView& image,
                                  const std::vector<const Surface*>& surfaces,
                                  const std::vector<double>& mip_values, WrapModes wrap,
-                                 Reader reader, const Progress& progress, int threads);
+                                 Reader reader, const Run& run);
 
 }  // namespace prefilter

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/geometry/surface.h"
 #include "prefilter/textures/mipmap_filter.h"
@@ -41,8 +41,7 @@ struct MipmapOptions {
   // lookups. Otherwise levels are fitted to the image averaged over the footprint, the ideal color
   // of a pixel with one lookup.
   double footprint = 0.0;
-  int threads = 0;  // 0 = all processors
-  Progress progress;
+  Run run;
   const char* image_name = "image";  // its name in error messages
 };
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/geometry/surface.h"
 #include "prefilter/textures/mipmap_filter.h"
@@ -21,8 +21,7 @@ struct NormalMipmapOptions {
   double footprint = 0.0;  // MipmapOptions::footprint, for the normals
   bool encoded = true;     // components c are stored as (c + 1) / 2, in the input and the result
   int levels = 0;          // number of levels, including level 0; 0 = down to 1 x 1
-  int threads = 0;         // 0 = all processors
-  Progress progress;
+  Run run;
 };
 
 /// Levels 1 and up.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/geometry/surface.h"
 
@@ -17,6 +17,6 @@ namespace prefilter {
 /// are no levels, if their channel counts differ, or if a seam reads a texel that is not finite.
 std::vector<double> seam_contrast(const std::vector<ImageView>& levels,
                                   const std::vector<const Surface*>& surfaces, WrapModes wrap,
-                                  const Progress& progress);
+                                  const Run& run);
 
 }  // namespace prefilter

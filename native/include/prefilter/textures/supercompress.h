@@ -8,14 +8,14 @@
 #include <span>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
 /// Compresses bytes to one zstd frame (RFC 8878) that records their number. The result is the same
 /// on all processors. Throws Error if `progress` cancels.
 std::vector<std::uint8_t> supercompress(const std::uint8_t* bytes, std::size_t count,
-                                        const Progress& progress);
+                                        const Run& run);
 
 /// Decompresses zstd frames to exactly `count` bytes. Throws Error if they are damaged or hold a
 /// different number of bytes.

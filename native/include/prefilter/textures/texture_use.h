@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/geometry/surface.h"
 
@@ -17,17 +17,16 @@ namespace prefilter {
 /// Throws Error if a side is less than 1, if there is no surface, or if none has an area inside the
 /// image.
 Image texel_weights(const std::vector<const Surface*>& surfaces, int width, int height,
-                    WrapModes wrap, const Progress& progress, int threads);
+                    WrapModes wrap, const Run& run);
 
 /// Fills the colors of texels with an alpha of 0 or less (alpha is the last of 2 to 4 channels)
 /// from their surroundings, by push-pull weighted with alpha. Throws Error for other channel
 /// counts.
-Image fill_transparent(const ImageView& image, WrapModes wrap, const Progress& progress,
-                       int threads);
+Image fill_transparent(const ImageView& image, WrapModes wrap, const Run& run);
 
 /// Fills texels that no bilinear lookup on the surfaces reads from the read ones around them, by
 /// push-pull, out to the edges of the image. Throws Error like texel_weights.
 Image fill_unused(const ImageView& image, const std::vector<const Surface*>& surfaces,
-                  WrapModes wrap, const Progress& progress, int threads);
+                  WrapModes wrap, const Run& run);
 
 }  // namespace prefilter

@@ -10,7 +10,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/names.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -29,8 +29,7 @@ struct SolidOptions {
   double gap = 2.0;        // in cells: gaps up to this width do not connect to the outside
   double thickness = 1.5;  // in cells: thickness given to sheets and parts without an inside
   SheetMethod sheets = SheetMethod::kShell;
-  int threads = 0;  // 0: all processors
-  Progress progress;
+  Run run;
 };
 
 /// Statistics of as_solid.

@@ -9,7 +9,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/names.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -26,8 +26,7 @@ struct CloseHolesOptions {
   HoleMethod method = HoleMethod::kSmooth;
   // Whether loops stay open if their caps would cancel the surface.
   bool leaves_losses = true;
-  int threads = 0;  // 0: all processors
-  Progress progress;
+  Run run;
 };
 
 /// Triangles that close a mesh, and the vertices that they add.

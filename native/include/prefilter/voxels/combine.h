@@ -4,7 +4,7 @@
 #pragma once
 
 #include "prefilter/base/names.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/octree.h"
 
 namespace prefilter {
@@ -34,7 +34,6 @@ inline constexpr Named<SetOperation> kSetOperations[] = {
 /// Where both surfaces pass through a cell and the result would be 1/2, the contour's iso-value, it
 /// is rounded so that coincident faces leave neither a thin film (difference, intersection) nor a
 /// crack (union).
-Octree combine(const Octree& a, const Octree& b, SetOperation operation, const Progress& progress,
-               int threads);
+Octree combine(const Octree& a, const Octree& b, SetOperation operation, const Run& run);
 
 }  // namespace prefilter

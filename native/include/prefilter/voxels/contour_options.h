@@ -9,7 +9,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/names.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/wavelet/cell_tree.h"
 
 namespace prefilter {
@@ -46,8 +46,7 @@ struct ContourOptions {
   // Nonzero in cells of the finest depth that were thickened, where the surface differs from the
   // sources' and follows kPlane.
   const CellTree* thickened = nullptr;
-  int threads = 0;  // 0: all processors
-  Progress progress;
+  Run run;
 };
 
 }  // namespace prefilter

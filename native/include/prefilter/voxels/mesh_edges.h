@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -22,6 +22,6 @@ struct MeshEdges {
 
 /// The result does not depend on the number of threads. Throws Error for an invalid mesh, or one of
 /// more than 2^31 - 1 corners; Error(kCancelled).
-MeshEdges find_mesh_edges(const InputMesh& mesh, const Progress& progress, int threads);
+MeshEdges find_mesh_edges(const InputMesh& mesh, const Run& run);
 
 }  // namespace prefilter

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -31,7 +31,6 @@ struct MeshTopology {
 /// Parts that share only a vertex are separate. With `welds`, boundary vertices with equal
 /// positions count as one. The result does not depend on the number of threads. Throws Error for an
 /// invalid mesh, or one of more than 2^31 - 1 corners; Error(kCancelled).
-MeshTopology mesh_topology(const InputMesh& mesh, bool welds, const Progress& progress,
-                           int threads);
+MeshTopology mesh_topology(const InputMesh& mesh, bool welds, const Run& run);
 
 }  // namespace prefilter

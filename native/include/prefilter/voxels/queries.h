@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/octree.h"
 
 namespace prefilter {
@@ -32,7 +32,6 @@ std::vector<std::int8_t> classify(const Octree& octree, std::span<const Vector3>
 
 /// Occupancies of all n^3 cells of a depth, n = 2^depth, at index [(x * n + y) * n + z]: means
 /// where the tree is finer, and the leaf's value where it is coarser. Throws Error(kOutOfMemory).
-std::vector<float> dense_values(const Octree& octree, int depth, const Progress& progress,
-                                int threads);
+std::vector<float> dense_values(const Octree& octree, int depth, const Run& run);
 
 }  // namespace prefilter

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -18,7 +18,6 @@ namespace prefilter {
 ///
 /// Decided by exact predicates; the result does not depend on the number of threads. Throws Error
 /// for an invalid mesh, or one of 2^31 vertices or more; Error(kCancelled).
-std::vector<std::array<std::uint32_t, 2>> self_intersections(const InputMesh& mesh,
-                                                             const Progress& progress, int threads);
+std::vector<std::array<std::uint32_t, 2>> self_intersections(const InputMesh& mesh, const Run& run);
 
 }  // namespace prefilter

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/octree.h"
 
 namespace prefilter {
@@ -15,8 +15,7 @@ struct VoxelizeOptions {
   int depth = 8;              // 1 to kMaxTreeDepth: 2^depth cells along an axis
   std::optional<Box> bounds;  // bounds of the root; none: a cube around the mesh
   double thickness = 0.0;     // in cells: minimum thickness; 0: no thickening
-  int threads = 0;            // 0: all processors
-  Progress progress;
+  Run run;
 };
 
 /// Computes the occupancy of every cell: the exact volume of the mesh's inside in it, relative to

@@ -15,7 +15,7 @@
 #include <functional>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -70,11 +70,11 @@ float block_mean(const OctantValues& values);
 void link_blocks(TreeLevel* level);
 
 /// Calls body(begin, end) for ranges that cover the level's blocks, in unspecified order.
-void for_blocks(const TreeLevel& level, int threads, const Progress& progress,
+void for_blocks(const TreeLevel& level, const Run& run,
                 const std::function<void(std::size_t, std::size_t)>& body);
 
 /// Computes the values of all split cells, including the root, from the leaves. Throws
 /// Error(kCancelled).
-void update_means(CellTree* tree, const Progress& progress, int threads);
+void update_means(CellTree* tree, const Run& run);
 
 }  // namespace prefilter

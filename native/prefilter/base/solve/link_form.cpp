@@ -67,8 +67,8 @@ void find_products(const std::vector<TexelLink>& links, std::span<const LinkCoef
 }  // namespace
 
 LinkForm::LinkForm(const std::vector<TexelLink>& links,
-                   const std::function<bool(std::ptrdiff_t)>& is_part, const Progress& progress) {
-  CancelCheck cancel_check(progress);
+                   const std::function<bool(std::ptrdiff_t)>& is_part, const Run& run) {
+  CancelCheck cancel_check(run);
   const std::vector<LinkCoefficient> uses = coefficients_of(links, is_part, &cancel_check);
   std::vector<Product> products;
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {

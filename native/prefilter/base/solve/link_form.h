@@ -10,7 +10,7 @@
 
 #include "prefilter/base/image.h"
 #include "prefilter/base/lanes.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -28,7 +28,7 @@ class LinkForm {
   LinkForm() = default;
   /// Ignores links to texels that are not part of the system.
   LinkForm(const std::vector<TexelLink>& links, const std::function<bool(std::ptrdiff_t)>& is_part,
-           const Progress& progress);
+           const Run& run);
 
   bool empty() const { return texels_.empty(); }
 

@@ -278,7 +278,7 @@ Lanes NinePointSystem<Entry>::typical_values() const {
 }
 
 template <typename Entry>
-int NinePointSystem<Entry>::solve(const SolveOptions& options, const Progress& progress) {
+int NinePointSystem<Entry>::solve(const SolveOptions& options, const Run& run) {
   const Lanes typical = typical_values();
 
   // A row is relaxed as long as it or a neighboring row still moves; the slot past the last row
@@ -300,14 +300,14 @@ int NinePointSystem<Entry>::solve(const SolveOptions& options, const Progress& p
   std::atomic<bool> stop{false};
   const auto report = [&](double sweeps_done) {
     try {
-      if (!cancelled) progress.report(sweeps_done / options.max_sweeps);
+      if (!cancelled) run.report(sweeps_done / options.max_sweeps);
     } catch (...) {
       cancelled = std::current_exception();
       stop = true;
     }
   };
   const bool small = static_cast<std::int64_t>(width_) * height_ < kMinParallelTexels;
-  parallel_team(small ? 1 : resolve_threads(options.threads), [&](Team& team) {
+  parallel_team(small ? 1 : resolve_threads(run.threads()), [&](Team& team) {
     while (!done) {
       for (int color = 0; color < 2; ++color) {
         const std::int64_t end = team.share_end(rows_of_color[color]);
@@ -414,7 +414,7 @@ std::array<double, kMaxChannels> NinePointSystem<Entry>::form(const std::vector<
   std::vector<Sums> rows(static_cast<std::size_t>(height_));
   const bool repeat = wrap_.u == Wrap::kRepeat && width_ > 1;
   const bool small = static_cast<std::int64_t>(width_) * height_ < kMinParallelTexels;
-  parallel_for(height_, small ? 1 : threads, Progress(), [&](std::int64_t row) {
+  parallel_for(height_, Run(small ? 1 : threads), [&](std::int64_t row) {
     const int y = static_cast<int>(row);
     const Stencil* here = stencils_.data() + at(0, y);
     const LaneValues* values = texels_.data() + at(0, y);

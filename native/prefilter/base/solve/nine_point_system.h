@@ -12,7 +12,7 @@
 
 #include "prefilter/base/image.h"
 #include "prefilter/base/lanes.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/solve/link_form.h"
 #include "prefilter/base/value_range.h"
 #include "prefilter/base/wrap.h"
@@ -35,7 +35,6 @@ struct SolveOptions {
   // typical one of its channel.
   double tolerance = 1e-5;
   int max_sweeps = 300;
-  int threads = 0;
 };
 
 /// A symmetric system for up to four channels at once. The type of its entries is float if the
@@ -93,7 +92,7 @@ class NinePointSystem {
   /// Gauss-Seidel over rows of alternating color; the result is the same for any number of threads.
   /// If the system is nearly singular, as under charts that shrink to points, texels may stop some
   /// distance from the solution, where the objective hardly changes. Returns the number of sweeps.
-  int solve(const SolveOptions& options, const Progress& progress);
+  int solve(const SolveOptions& options, const Run& run);
 
   /// t' A t - 2 b' t for each channel, with the texels t and the matrix A without links, reduced by
   /// `less` on its diagonal. To be called after invert_diagonal.

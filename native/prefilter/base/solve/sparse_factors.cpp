@@ -172,28 +172,28 @@ EliminationTree elimination_tree(std::span<const std::size_t> row_begins,
 }  // namespace
 
 SparseFactors::SparseFactors(std::vector<SparseEntry> lower, std::span<const Vector3> places,
-                             const Progress& progress)
+                             const Run& run)
     : order_(places.size()), diagonal_(places.size()), begins_(places.size() + 1, 0) {
   const std::size_t count = places.size();
-  progress.report(0.0);
+  run.report(0.0);
   sum_duplicates(&lower);
-  progress.report(0.1);
+  run.report(0.1);
   for (std::size_t i = 0; i < count; ++i) order_[i] = static_cast<std::uint32_t>(i);
   Dissection(neighbors_of(count, lower), places).sort(order_);
   sort_by_steps(order_, &lower);
-  progress.report(0.2);
+  run.report(0.2);
 
   const std::vector<std::size_t> row_begins = row_begins_of(count, lower);
   const EliminationTree tree = elimination_tree(row_begins, lower);
   for (std::size_t i = 0; i < count; ++i) begins_[i + 1] = begins_[i] + tree.lengths[i];
   rows_.resize(begins_.back());
   values_.resize(begins_.back());
-  is_definite_ = factorize(lower, row_begins, tree.parents, progress.part(0.2, 1.0));
+  is_definite_ = factorize(lower, row_begins, tree.parents, run.part(0.2, 1.0));
 }
 
 bool SparseFactors::factorize(std::span<const SparseEntry> entries,
                               std::span<const std::size_t> row_begins,
-                              std::span<const std::uint32_t> parents, const Progress& progress) {
+                              std::span<const std::uint32_t> parents, const Run& run) {
   const std::size_t count = order_.size();
   double products = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -240,10 +240,10 @@ bool SparseFactors::factorize(std::span<const SparseEntry> entries,
     diagonal_[row] = own;
     if (since_report > kProductsPerReport) {
       finished_products += static_cast<double>(std::exchange(since_report, 0));
-      progress.report(finished_products / std::max(products, 1.0));
+      run.report(finished_products / std::max(products, 1.0));
     }
   }
-  progress.report(1.0);
+  run.report(1.0);
   return true;
 }
 

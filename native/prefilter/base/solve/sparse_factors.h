@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -26,8 +26,7 @@ class SparseFactors {
   /// Entries at the same position are summed. `places` has a point for each row: rows are
   /// eliminated by nested dissection of these, which keeps the factors of surface meshes small.
   /// Throws Error(kCancelled).
-  SparseFactors(std::vector<SparseEntry> lower, std::span<const Vector3> places,
-                const Progress& progress);
+  SparseFactors(std::vector<SparseEntry> lower, std::span<const Vector3> places, const Run& run);
 
   /// Whether the matrix was positive definite up to rounding; otherwise there are no factors.
   bool is_definite() const { return is_definite_; }
@@ -40,7 +39,7 @@ class SparseFactors {
   // Factorizes row by row, with entries sorted by elimination step and space allocated for the
   // columns. Returns false if the matrix is not definite.
   bool factorize(std::span<const SparseEntry> entries, std::span<const std::size_t> row_begins,
-                 std::span<const std::uint32_t> parents, const Progress& progress);
+                 std::span<const std::uint32_t> parents, const Run& run);
 
   bool is_definite_ = true;
   std::vector<std::uint32_t> order_;  // the row eliminated at each step

@@ -36,7 +36,7 @@ class BoxTree {
   /// `leaf_items` items. `box_of(item)` is the bounding box of an item.
   template <typename BoxOf>
   BoxTree(std::span<const std::uint64_t> keys, std::size_t leaf_items, const BoxOf& box_of,
-          const Progress& progress);
+          const Run& run);
 
   bool is_empty() const { return nodes_.empty(); }
   /// In preorder, starting with the root.
@@ -74,7 +74,7 @@ class BoxTree {
 
 template <typename BoxOf>
 BoxTree::BoxTree(std::span<const std::uint64_t> keys, std::size_t leaf_items, const BoxOf& box_of,
-                 const Progress& progress) {
+                 const Run& run) {
   if (keys.empty()) return;
   nodes_.reserve(4 * (keys.size() / leaf_items) + 1);
   struct Waiting {
@@ -86,7 +86,7 @@ BoxTree::BoxTree(std::span<const std::uint64_t> keys, std::size_t leaf_items, co
   std::array<Waiting, kMaxDepth> waiting;
   std::size_t count = 0;
   waiting[count++] = {0, static_cast<std::uint32_t>(keys.size()), kNoParent};
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   while (count > 0) {
     auto [begin, end, parent] = waiting[--count];
     if (parent != kNoParent) nodes_[parent].right = static_cast<std::uint32_t>(nodes_.size());

@@ -35,7 +35,7 @@ void check(const InputMesh& surface, std::span<const std::int32_t> origins,
 
 CornerPoints find_corner_points(const InputMesh& surface, std::span<const std::int32_t> origins,
                                 const InputMesh& mesh, std::span<const std::int32_t> labels,
-                                const Progress& progress, int threads) {
+                                const Run& run) {
   check_mesh(mesh, kMaxCornerCoordinate);
   check(surface, origins, labels, mesh.triangles.size());
 
@@ -75,8 +75,8 @@ CornerPoints find_corner_points(const InputMesh& surface, std::span<const std::i
   // Vertices without triangles use the origin of the first triangle.
   for (std::int32_t& origin : origin_of) origin = origin == kNone ? 0 : origin;
 
-  const NearestPoints tree(mesh, labels, progress.part(0.05, 0.5), threads);
-  result.points = tree.find_on(points, origin_of, progress.part(0.5, 1.0), threads);
+  const NearestPoints tree(mesh, labels, run.part(0.05, 0.5));
+  result.points = tree.find_on(points, origin_of, run.part(0.5, 1.0));
   return result;
 }
 

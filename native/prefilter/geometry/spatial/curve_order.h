@@ -28,8 +28,7 @@ struct CurvePlace {
 /// The keys of `count` finite points `point_of(i)`, sorted. Points at the same position have the
 /// same key.
 template <typename PointOf>
-std::vector<CurvePlace> along_curve(std::size_t count, const PointOf& point_of,
-                                    const Progress& progress, int threads) {
+std::vector<CurvePlace> along_curve(std::size_t count, const PointOf& point_of, const Run& run) {
   constexpr std::int64_t kRowsPerTask = 1 << 15;
   const auto rows = static_cast<std::int64_t>(count);
   std::vector<Box> boxes(static_cast<std::size_t>(range_count(rows, kRowsPerTask)), kEmptyBox);
@@ -37,7 +36,8 @@ std::vector<CurvePlace> along_curve(std::size_t count, const PointOf& point_of,
     Box& box = boxes[static_cast<std::size_t>(begin / kRowsPerTask)];
     for (std::int64_t i = begin; i < end; ++i) box.include(point_of(static_cast<std::size_t>(i)));
   };
-  parallel_ranges(rows, kRowsPerTask, threads, progress.part(0.0, 0.1), measure);
+  const Stages stages(run, {1, 1, 8});
+  parallel_ranges(rows, kRowsPerTask, stages[0], measure);
   Box all = kEmptyBox;
   for (const Box& box : boxes) all.include(box);
   std::vector<CurvePlace> places(count);
@@ -53,8 +53,8 @@ std::vector<CurvePlace> along_curve(std::size_t count, const PointOf& point_of,
       places[static_cast<std::size_t>(i)] = {morton_index(cell), static_cast<std::uint32_t>(i)};
     }
   };
-  parallel_ranges(rows, kRowsPerTask, threads, progress.part(0.1, 0.2), place);
-  sort_in_parallel(&places, progress.part(0.2, 1.0), threads);
+  parallel_ranges(rows, kRowsPerTask, stages[1], place);
+  sort_in_parallel(&places, stages[2]);
   return places;
 }
 

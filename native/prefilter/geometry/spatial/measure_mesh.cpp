@@ -33,16 +33,15 @@ MeshMeasures measure_some(const InputMesh& mesh, std::int64_t begin, std::int64_
 
 }  // namespace
 
-MeshMeasures measure_mesh(const InputMesh& mesh, const Progress& progress, int threads) {
+MeshMeasures measure_mesh(const InputMesh& mesh, const Run& run) {
   check_mesh(mesh, kLargestCoordinate);
   const auto count = static_cast<std::int64_t>(mesh.triangles.size());
   const Vector3 origin = mesh.corners(0)[0];
   std::vector<MeshMeasures> parts(static_cast<std::size_t>(range_count(count, kTrianglesPerTask)));
-  parallel_ranges(count, kTrianglesPerTask, threads, progress,
-                  [&](std::int64_t begin, std::int64_t end) {
-                    parts[static_cast<std::size_t>(begin / kTrianglesPerTask)] =
-                        measure_some(mesh, begin, end, origin);
-                  });
+  parallel_ranges(count, kTrianglesPerTask, run, [&](std::int64_t begin, std::int64_t end) {
+    parts[static_cast<std::size_t>(begin / kTrianglesPerTask)] =
+        measure_some(mesh, begin, end, origin);
+  });
   MeshMeasures all;
   for (const MeshMeasures& part : parts) {
     all.box.include(part.box);

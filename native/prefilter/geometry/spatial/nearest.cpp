@@ -50,9 +50,8 @@ struct Copy {
 
 // Removes all but the first of identical triangles with the same label, whose keys are equal. Sets
 // the position of each triangle on the curve, or that of the remaining copy.
-void drop_copies(const InputMesh& mesh, std::span<const std::int32_t> labels,
-                 const Progress& progress, int threads, std::vector<CurvePlace>* places,
-                 std::span<std::uint32_t> place_of) {
+void drop_copies(const InputMesh& mesh, std::span<const std::int32_t> labels, const Run& run,
+                 std::vector<CurvePlace>* places, std::span<std::uint32_t> place_of) {
   constexpr std::size_t kCopiesPerSort = 1U << 15;
   std::vector<Copy> copies;
   std::size_t distinct = 0;
@@ -75,7 +74,7 @@ void drop_copies(const InputMesh& mesh, std::span<const std::int32_t> labels,
     if (copies.size() < kCopiesPerSort) {
       std::sort(copies.begin(), copies.end());
     } else {
-      sort_in_parallel(&copies, progress, threads);
+      sort_in_parallel(&copies, run);
     }
     for (std::size_t i = 0; i < copies.size(); ++i) {
       if (i == 0 || !copies[i].is_of(copies[i - 1])) {
@@ -105,20 +104,16 @@ struct Best {
 /// The tree, and a copy of the mesh.
 class NearestPoints::Tree {
  public:
-  Tree(const InputMesh& mesh, std::span<const std::int32_t> labels, const Progress& progress,
-       int threads);
+  Tree(const InputMesh& mesh, std::span<const std::int32_t> labels, const Run& run);
 
-  std::vector<SurfacePoint> find(std::span<const Vector3> points, const Progress& progress,
-                                 int threads) const;
+  std::vector<SurfacePoint> find(std::span<const Vector3> points, const Run& run) const;
   std::vector<SurfacePoint> find_on(std::span<const Vector3> points,
-                                    std::span<const std::int32_t> origins, const Progress& progress,
-                                    int threads) const;
+                                    std::span<const std::int32_t> origins, const Run& run) const;
 
  private:
   // Returns the Morton keys of the triangles.
   std::vector<std::uint64_t> sort_triangles(const InputMesh& mesh,
-                                            std::span<const std::int32_t> labels,
-                                            const Progress& progress, int threads);
+                                            std::span<const std::int32_t> labels, const Run& run);
   Box box_of(std::size_t place) const;
   void try_triangle(std::size_t place, const Vector3& point, Best* best) const;
   void search(const Vector3& point, std::optional<std::int32_t> label, Best* best) const;
@@ -135,16 +130,16 @@ class NearestPoints::Tree {
 };
 
 NearestPoints::Tree::Tree(const InputMesh& mesh, std::span<const std::int32_t> labels,
-                          const Progress& progress, int threads) {
+                          const Run& run) {
   check_mesh(mesh, kLargestNear);
   if (!labels.empty() && labels.size() != mesh.triangles.size()) {
     throw_invalid("labels: found " + std::to_string(labels.size()) + " for " +
                   std::to_string(mesh.triangles.size()) + " triangles; one each is needed");
   }
-  const std::vector<std::uint64_t> keys =
-      sort_triangles(mesh, labels, progress.part(0.0, 0.8), threads);
+  const Stages stages(run, {4, 1});
+  const std::vector<std::uint64_t> keys = sort_triangles(mesh, labels, stages[0]);
   const auto box = [&](std::size_t place) { return box_of(place); };
-  boxes_ = BoxTree(keys, kLeafTriangles, box, progress.part(0.8, 1.0));
+  boxes_ = BoxTree(keys, kLeafTriangles, box, stages[1]);
   lowest_indices_.resize(boxes_.nodes().size());
   for (std::size_t n = lowest_indices_.size(); n-- > 0;) {
     const BoxTree::Node& node = boxes_.nodes()[n];
@@ -157,8 +152,7 @@ NearestPoints::Tree::Tree(const InputMesh& mesh, std::span<const std::int32_t> l
 
 std::vector<std::uint64_t> NearestPoints::Tree::sort_triangles(const InputMesh& mesh,
                                                                std::span<const std::int32_t> labels,
-                                                               const Progress& progress,
-                                                               int threads) {
+                                                               const Run& run) {
   positions_.reserve(mesh.positions.size());
   for (const Vector3& position : mesh.positions) positions_.push_back(position);
   const auto middle = [&](std::size_t triangle) {
@@ -168,10 +162,10 @@ std::vector<std::uint64_t> NearestPoints::Tree::sort_triangles(const InputMesh& 
     for (int a = 0; a < 3; ++a) result[a] = box.low[a] + box.size(a) / 2.0;
     return result;
   };
-  std::vector<CurvePlace> places =
-      along_curve(mesh.triangles.size(), middle, progress.part(0.0, 0.8), threads);
+  const Stages stages(run, {8, 1, 1});
+  std::vector<CurvePlace> places = along_curve(mesh.triangles.size(), middle, stages[0]);
   places_.resize(labels.size());
-  drop_copies(mesh, labels, progress.part(0.8, 0.9), threads, &places, places_);
+  drop_copies(mesh, labels, stages[1], &places, places_);
   labels_.resize(labels.empty() ? 0 : places.size());
   triangles_.resize(places.size());
   indices_.resize(places.size());
@@ -185,8 +179,7 @@ std::vector<std::uint64_t> NearestPoints::Tree::sort_triangles(const InputMesh& 
       for (int c = 0; c < 3; ++c) triangles_[i][c] = static_cast<std::int32_t>(triangle[c]);
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(places.size()), kRowsPerTask, threads,
-                  progress.part(0.9, 1.0), copy);
+  parallel_ranges(static_cast<std::int64_t>(places.size()), kRowsPerTask, stages[2], copy);
   return keys;
 }
 
@@ -232,12 +225,13 @@ void NearestPoints::Tree::search(const Vector3& point, std::optional<std::int32_
 }
 
 std::vector<SurfacePoint> NearestPoints::Tree::find(std::span<const Vector3> points,
-                                                    const Progress& progress, int threads) const {
+                                                    const Run& run) const {
   check_points(points, "points: row", kLargestNear);
+  const Stages stages(run, {1, 9});
   // Along the curve, neighboring points follow each other: the nearest triangle of the previous
   // point is a good initial guess, and its surroundings are in the cache.
   const std::vector<CurvePlace> order = along_curve(
-      points.size(), [&](std::size_t i) { return points[i]; }, progress.part(0.0, 0.1), threads);
+      points.size(), [&](std::size_t i) { return points[i]; }, stages[0]);
   std::vector<SurfacePoint> found(points.size());
   const auto find_some = [&](std::int64_t begin, std::int64_t end) {
     std::size_t guess = 0;
@@ -250,15 +244,13 @@ std::vector<SurfacePoint> NearestPoints::Tree::find(std::span<const Vector3> poi
       found[order[i].index] = {best.index, best.weights, std::sqrt(best.squared)};
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(points.size()), kPointsPerTask, threads,
-                  progress.part(0.1, 1.0), find_some);
+  parallel_ranges(static_cast<std::int64_t>(points.size()), kPointsPerTask, stages[1], find_some);
   return found;
 }
 
 std::vector<SurfacePoint> NearestPoints::Tree::find_on(std::span<const Vector3> points,
                                                        std::span<const std::int32_t> origins,
-                                                       const Progress& progress,
-                                                       int threads) const {
+                                                       const Run& run) const {
   check_points(points, "points: row", kLargestNear);
   if (origins.size() != points.size()) {
     throw_invalid("origins: found " + std::to_string(origins.size()) + " for " +
@@ -280,35 +272,35 @@ std::vector<SurfacePoint> NearestPoints::Tree::find_on(std::span<const Vector3> 
       found[i] = {best.index, best.weights, std::sqrt(best.squared)};
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(points.size()), kPointsPerTask, threads, progress,
-                  find_some);
+  parallel_ranges(static_cast<std::int64_t>(points.size()), kPointsPerTask, run, find_some);
   return found;
 }
 
-NearestPoints::NearestPoints(const InputMesh& mesh, const Progress& progress, int threads)
-    : NearestPoints(mesh, {}, progress, threads) {}
+NearestPoints::NearestPoints(const InputMesh& mesh, const Run& run)
+    : NearestPoints(mesh, {}, run) {}
 
 NearestPoints::NearestPoints(const InputMesh& mesh, std::span<const std::int32_t> labels,
-                             const Progress& progress, int threads)
-    : tree_(std::make_unique<const Tree>(mesh, labels, progress, threads)) {}
+                             const Run& run)
+    : tree_(std::make_unique<const Tree>(mesh, labels, run)) {}
 
 NearestPoints::~NearestPoints() = default;
 
 std::vector<SurfacePoint> NearestPoints::find(std::span<const Vector3> points,
-                                              const Progress& progress, int threads) const {
-  return tree_->find(points, progress, threads);
+                                              const Run& run) const {
+  return tree_->find(points, run);
 }
 
 std::vector<SurfacePoint> NearestPoints::find_on(std::span<const Vector3> points,
                                                  std::span<const std::int32_t> origins,
-                                                 const Progress& progress, int threads) const {
-  return tree_->find_on(points, origins, progress, threads);
+                                                 const Run& run) const {
+  return tree_->find_on(points, origins, run);
 }
 
 std::vector<SurfacePoint> nearest_points(std::span<const Vector3> points, const InputMesh& mesh,
-                                         const Progress& progress, int threads) {
-  const NearestPoints tree(mesh, progress.part(0.0, 0.3), threads);
-  return tree.find(points, progress.part(0.3, 1.0), threads);
+                                         const Run& run) {
+  const Stages stages(run, {3, 7});
+  const NearestPoints tree(mesh, stages[0]);
+  return tree.find(points, stages[1]);
 }
 
 }  // namespace prefilter

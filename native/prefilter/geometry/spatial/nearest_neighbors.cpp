@@ -25,7 +25,7 @@ bool is_usable(const Vector3& point) {
 
 // Sorts identical points, which have the same key, next to each other.
 void sort_by_position(std::span<const Vector3> points, std::vector<CurvePlace>* order,
-                      const Progress& progress, int threads) {
+                      const Run& run) {
   const auto is_before = [&](const CurvePlace& a, const CurvePlace& b) {
     const Vector3& p = points[a.index];
     const Vector3& q = points[b.index];
@@ -33,7 +33,7 @@ void sort_by_position(std::span<const Vector3> points, std::vector<CurvePlace>* 
   };
   constexpr std::size_t kMany = 1U << 15;
   std::vector<CurvePlace> copies;
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   for (std::size_t begin = 0, end = 0; begin < order->size(); begin = end) {
     cancel_check.step();
     while (end < order->size() && (*order)[end].key == (*order)[begin].key) ++end;
@@ -44,7 +44,7 @@ void sort_by_position(std::span<const Vector3> points, std::vector<CurvePlace>* 
       std::sort(first, last, is_before);
     } else {
       copies.assign(first, last);
-      sort_in_parallel(&copies, progress, threads, is_before);
+      sort_in_parallel(&copies, run, is_before);
       std::copy(copies.begin(), copies.end(), first);
     }
   }
@@ -74,8 +74,7 @@ void Neighbors::add(std::uint32_t place, double square) {
   if (places_.size() == most_) worst_ = squares_.back();
 }
 
-NeighborSearch::NeighborSearch(std::span<const Vector3> points, const Progress& progress,
-                               int threads) {
+NeighborSearch::NeighborSearch(std::span<const Vector3> points, const Run& run) {
   constexpr std::size_t kMaxPoints = std::numeric_limits<std::int32_t>::max();
   if (points.size() > kMaxPoints) {
     throw_invalid("points: found " + std::to_string(points.size()) + "; " +
@@ -83,16 +82,16 @@ NeighborSearch::NeighborSearch(std::span<const Vector3> points, const Progress& 
   }
   std::vector<std::uint32_t> usable;
   usable.reserve(points.size());
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   for (std::size_t i = 0; i < points.size(); ++i) {
     cancel_check.step();
     if (is_usable(points[i])) usable.push_back(static_cast<std::uint32_t>(i));
   }
+  const Stages stages(run, {7, 1, 2});
   std::vector<CurvePlace> order = along_curve(
-      usable.size(), [&](std::size_t i) { return points[usable[i]]; }, progress.part(0.0, 0.7),
-      threads);
+      usable.size(), [&](std::size_t i) { return points[usable[i]]; }, stages[0]);
   for (CurvePlace& place : order) place.index = usable[place.index];
-  sort_by_position(points, &order, progress.part(0.7, 0.8), threads);
+  sort_by_position(points, &order, stages[1]);
   places_.assign(points.size(), kNowhere);
   positions_.reserve(order.size());
   std::vector<std::uint64_t> keys;
@@ -107,7 +106,7 @@ NeighborSearch::NeighborSearch(std::span<const Vector3> points, const Progress& 
     places_[place.index] = static_cast<std::uint32_t>(positions_.size() - 1);
   }
   const auto box_of = [&](std::size_t i) { return Box{positions_[i], positions_[i]}; };
-  tree_ = BoxTree(keys, kLeafPoints, box_of, progress.part(0.8, 1.0));
+  tree_ = BoxTree(keys, kLeafPoints, box_of, stages[2]);
 }
 
 void NeighborSearch::find(std::uint32_t place, std::size_t count, Neighbors* found) const {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/geometry/spatial/box_tree.h"
 
 namespace prefilter {
@@ -42,7 +42,7 @@ class NeighborSearch {
 
   /// Leaves out points with a coordinate that is not finite, or above 1e150, whose square would
   /// overflow. Throws Error for more than 2^31 - 1 points; Error(kCancelled).
-  NeighborSearch(std::span<const Vector3> points, const Progress& progress, int threads);
+  NeighborSearch(std::span<const Vector3> points, const Run& run);
 
   /// The distinct positions, indexed by place.
   std::span<const Vector3> positions() const { return positions_; }

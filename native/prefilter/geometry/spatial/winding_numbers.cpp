@@ -81,7 +81,7 @@ std::optional<int> crossing_sign(const std::array<Vector3, 3>& triangle, const V
 
 }  // namespace
 
-WindingNumbers::WindingNumbers(const InputMesh& mesh, const Progress& progress, int threads) {
+WindingNumbers::WindingNumbers(const InputMesh& mesh, const Run& run) {
   check_mesh(mesh, kMaxWindingCoordinate);
   const auto middle_of = [&](std::size_t triangle) {
     const auto corners = mesh.corners(triangle);
@@ -90,7 +90,7 @@ WindingNumbers::WindingNumbers(const InputMesh& mesh, const Progress& progress, 
     return middle;
   };
   const std::vector<CurvePlace> places =
-      along_curve(mesh.triangles.size(), middle_of, progress.part(0.0, 0.6), threads);
+      along_curve(mesh.triangles.size(), middle_of, run.part(0.0, 0.6));
   std::vector<std::uint64_t> keys;
   keys.reserve(places.size());
   triangles_.reserve(places.size());
@@ -103,14 +103,14 @@ WindingNumbers::WindingNumbers(const InputMesh& mesh, const Progress& progress, 
     for (const Vector3& corner : triangles_[item]) box.include(corner);
     return box;
   };
-  tree_ = BoxTree(keys, kTrianglesPerLeaf, box_of, progress.part(0.6, 0.9));
+  tree_ = BoxTree(keys, kTrianglesPerLeaf, box_of, run.part(0.6, 0.9));
   far_fields_.resize(tree_.nodes().size());
   std::vector<double> areas(far_fields_.size());
   for (std::size_t n = far_fields_.size(); n-- > 0;) {
-    if (n % (1U << 16U) == 0) progress.report(0.9);
+    if (n % (1U << 16U) == 0) run.report(0.9);
     far_fields_[n] = far_field_of(n, &areas);
   }
-  progress.report(1.0);
+  run.report(1.0);
 }
 
 auto WindingNumbers::far_field_of(std::size_t n, std::vector<double>* areas) const -> FarField {
@@ -192,11 +192,10 @@ std::optional<double> WindingNumbers::excess(const Vector3& from, const Vector3&
   return sum;
 }
 
-std::vector<double> WindingNumbers::find(std::span<const Vector3> points, const Progress& progress,
-                                         int threads) const {
+std::vector<double> WindingNumbers::find(std::span<const Vector3> points, const Run& run) const {
   check_points(points, "points: row", kMaxWindingCoordinate);
   std::vector<double> result(points.size());
-  parallel_ranges(static_cast<std::int64_t>(points.size()), kWindingsPerTask, threads, progress,
+  parallel_ranges(static_cast<std::int64_t>(points.size()), kWindingsPerTask, run,
                   [&](std::int64_t begin, std::int64_t end) {
                     for (std::int64_t i = begin; i < end; ++i) {
                       result[static_cast<std::size_t>(i)] = at(points[static_cast<std::size_t>(i)]);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/geometry/spatial/box_tree.h"
 
 namespace prefilter {
@@ -20,13 +20,12 @@ namespace prefilter {
 class WindingNumbers {
  public:
   /// Throws Error like check_mesh, with a limit of 1e100 for positions; Error(kCancelled).
-  WindingNumbers(const InputMesh& mesh, const Progress& progress, int threads);
+  WindingNumbers(const InputMesh& mesh, const Run& run);
 
   /// Winding numbers of points, accurate to about 0.01: distant triangles are approximated
   /// together. The result is the same for any number of threads. Throws Error for points that are
   /// not finite; Error(kCancelled).
-  std::vector<double> find(std::span<const Vector3> points, const Progress& progress,
-                           int threads) const;
+  std::vector<double> find(std::span<const Vector3> points, const Run& run) const;
 
   /// Approximates nodes farther away than this many radii; 2 suffice to distinguish 0 from 1.
   double at(const Vector3& point, double far_radii = 4.0) const;

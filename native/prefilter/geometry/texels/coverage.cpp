@@ -80,12 +80,12 @@ std::pair<int, int> lines_between(const std::vector<double>& lines, int low, int
 }  // namespace
 
 std::vector<float> cell_masses(const TexelTriangles& triangles, const std::vector<double>& x_lines,
-                               const std::vector<double>& y_lines, const Progress& progress,
-                               int threads) {
-  const Tiles tiles(triangles, progress.part(0.0, 0.3), threads);
+                               const std::vector<double>& y_lines, const Run& run) {
+  const Stages stages(run, {3, 7});
+  const Tiles tiles(triangles, stages[0]);
   const std::size_t columns = x_lines.size() - 1;
   std::vector<float> masses(columns * (y_lines.size() - 1));
-  parallel_for(tiles.count(), threads, progress.part(0.3, 1.0), [&](std::int64_t tile) {
+  parallel_for(tiles.count(), stages[1], [&](std::int64_t tile) {
     const CellWindow window = tiles.window(tile);
     const auto [x_first, x_last] = lines_between(x_lines, window.x0, window.x1);
     const auto [y_first, y_last] = lines_between(y_lines, window.y0, window.y1);
@@ -104,35 +104,29 @@ std::vector<float> cell_masses(const TexelTriangles& triangles, const std::vecto
   return masses;
 }
 
-std::vector<float> texel_masses(const TexelTriangles& triangles, const Progress& progress,
-                                int threads) {
-  return cell_masses(triangles, whole_lines(triangles.width), whole_lines(triangles.height),
-                     progress, threads);
+std::vector<float> texel_masses(const TexelTriangles& triangles, const Run& run) {
+  return cell_masses(triangles, whole_lines(triangles.width), whole_lines(triangles.height), run);
 }
 
 std::vector<unsigned char> touched_texels(const std::vector<const Surface*>& surfaces, int width,
-                                          int height, WrapModes wrap, const Progress& progress,
-                                          int threads) {
-  const std::vector<float> masses =
-      texel_masses(map_to_texels(surfaces, width, height, wrap, MassOf::kPresence,
-                                 progress.part(0.0, 0.3), threads),
-                   progress.part(0.3, 1.0), threads);
+                                          int height, WrapModes wrap, const Run& run) {
+  const Stages stages(run, {3, 7});
+  const std::vector<float> masses = texel_masses(
+      map_to_texels(surfaces, width, height, wrap, MassOf::kPresence, stages[0]), stages[1]);
   std::vector<unsigned char> touched(masses.size());
   for (std::size_t i = 0; i < masses.size(); ++i) touched[i] = masses[i] > 0.0F ? 1 : 0;
   return touched;
 }
 
 std::vector<unsigned char> looked_up_texels(const std::vector<const Surface*>& surfaces, int width,
-                                            int height, WrapModes wrap, const Progress& progress,
-                                            int threads) {
-  const std::vector<float> halves =
-      texel_masses(map_to_texels(surfaces, 2 * width, 2 * height, wrap, MassOf::kArea,
-                                 progress.part(0.0, 0.3), threads),
-                   progress.part(0.3, 0.9), threads);
+                                            int height, WrapModes wrap, const Run& run) {
+  const Stages stages(run, {3, 6, 1});
+  const std::vector<float> halves = texel_masses(
+      map_to_texels(surfaces, 2 * width, 2 * height, wrap, MassOf::kArea, stages[0]), stages[1]);
   // Between neighboring texel centers a lookup reads the texels on both sides. So texel i is read
   // from the half-texel cells 2 i - 1 to 2 i + 2.
   std::vector<unsigned char> read(static_cast<std::size_t>(width) * height);
-  parallel_for(height, threads, progress.part(0.9, 1.0), [&](std::int64_t y) {
+  parallel_for(height, stages[2], [&](std::int64_t y) {
     std::vector<unsigned char> column_read(2 * static_cast<std::size_t>(width));
     for (int k = -1; k < 3; ++k) {
       const int row = wrap_index(2 * static_cast<int>(y) + k, 2 * height, wrap.v);

@@ -168,37 +168,37 @@ class Mapper final : public CellSink {
 }  // namespace
 
 TexelTriangles map_to_texels(const std::vector<const Surface*>& surfaces, int width, int height,
-                             WrapModes wrap, MassOf mass_of, const Progress& progress,
-                             int threads) {
+                             WrapModes wrap, MassOf mass_of, const Run& run) {
   double total_area = 0.0;
-  struct Run {
+  struct TriangleRange {
     std::size_t surface, first, last;
   };
   constexpr std::size_t kTrianglesAtOnce = 1 << 14;
-  std::vector<Run> runs;
+  std::vector<TriangleRange> ranges;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     total_area += surfaces[s]->total_area();
     const std::size_t count = surfaces[s]->triangle_count();
     for (std::size_t first = 0; first < count; first += kTrianglesAtOnce) {
-      runs.push_back({s, first, std::min(first + kTrianglesAtOnce, count)});
+      ranges.push_back({s, first, std::min(first + kTrianglesAtOnce, count)});
     }
   }
   // Scaled so that masses are of order 1 in any unit of length.
   const double scale = total_area > 0.0 ? static_cast<double>(width) * height / total_area : 0.0;
 
-  std::vector<TexelTriangles> mapped(runs.size());
-  const auto run_count = static_cast<std::int64_t>(runs.size());
-  parallel_for(run_count, threads, progress.part(0.0, 0.9), [&](std::int64_t i) {
-    const Run& run = runs[i];
-    const Surface& surface = *surfaces[run.surface];
-    mapped[i].triangles.reserve(run.last - run.first);
+  std::vector<TexelTriangles> mapped(ranges.size());
+  const auto range_count = static_cast<std::int64_t>(ranges.size());
+  const Stages stages(run, {9, 1});
+  parallel_for(range_count, stages[0], [&](std::int64_t i) {
+    const TriangleRange& range = ranges[i];
+    const Surface& surface = *surfaces[range.surface];
+    mapped[i].triangles.reserve(range.last - range.first);
     Mapper mapper(width, height, wrap, &mapped[i]);
-    for (std::size_t k = run.first; k < run.last; ++k) {
+    for (std::size_t k = range.first; k < range.last; ++k) {
       MassTriangle triangle;
       triangle.mass = mass_of == MassOf::kPresence ? 1.0 : surface.areas[k] * scale;
       if (!(triangle.mass > 0.0)) continue;
       for (int c = 0; c < 3; ++c) triangle.corners[c] = {surface.uvs[k][c].u, surface.uvs[k][c].v};
-      mapper.add(triangle, run.surface, k);
+      mapper.add(triangle, range.surface, k);
     }
   });
 
@@ -213,7 +213,7 @@ TexelTriangles map_to_texels(const std::vector<const Surface*>& surfaces, int wi
       out.uniform_density += part.uniform_density;
     }
     out.triangles.resize(starts.back());
-    parallel_for(run_count, threads, progress.part(0.9, 1.0), [&](std::int64_t i) {
+    parallel_for(range_count, stages[1], [&](std::int64_t i) {
       std::copy(mapped[i].triangles.begin(), mapped[i].triangles.end(),
                 out.triangles.begin() + static_cast<std::ptrdiff_t>(starts[i]));
       std::vector<MassTriangle>().swap(mapped[i].triangles);

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/geometry/moments/triangle_cells.h"
 #include "prefilter/geometry/surface.h"
@@ -36,6 +36,6 @@ enum class MassOf {
 /// as lookups would be. Throws Error if a triangle spans more than 2^20 tiles of a repeated
 /// texture, or lies farther out than 2^20 (repeat) or 2^30 tiles.
 TexelTriangles map_to_texels(const std::vector<const Surface*>& surfaces, int width, int height,
-                             WrapModes wrap, MassOf mass_of, const Progress& progress, int threads);
+                             WrapModes wrap, MassOf mass_of, const Run& run);
 
 }  // namespace prefilter

@@ -41,37 +41,38 @@ int tile_color(int tile, int count, int size) {
   return tile % 2;
 }
 
-Tiles::Tiles(const TexelTriangles& triangles, const Progress& progress, int threads)
+Tiles::Tiles(const TexelTriangles& triangles, const Run& run)
     : width_(triangles.width),
       height_(triangles.height),
       columns_((triangles.width + kSize - 1) / kSize),
       rows_((triangles.height + kSize - 1) / kSize) {
-  // Two passes over runs of triangles: the first counts each run's entries per tile, the second
+  // Two passes over runs of triangles: the first counts each batch's entries per tile, the second
   // writes them to their final positions.
-  constexpr std::size_t kRuns = 16;
+  constexpr std::size_t kBatches = 16;
   const std::size_t size = triangles.triangles.size();
-  const auto run_first = [size](std::int64_t run) { return size * run / kRuns; };
-  const auto for_each_member = [&](const Progress& part, const auto& use) {
-    parallel_for(kRuns, threads, part, [&](std::int64_t run) {
-      for (std::size_t k = run_first(run); k < run_first(run + 1); ++k) {
+  const auto batch_first = [size](std::int64_t batch) { return size * batch / kBatches; };
+  const auto for_each_member = [&](const Run& part, const auto& use) {
+    parallel_for(kBatches, part, [&](std::int64_t batch) {
+      for (std::size_t k = batch_first(batch); k < batch_first(batch + 1); ++k) {
         for_each_tile(triangles.triangles[k], columns_, rows_,
-                      [&](std::int64_t tile) { use(run, tile, k); });
+                      [&](std::int64_t tile) { use(batch, tile, k); });
       }
     });
   };
-  std::array<std::vector<std::int64_t>, kRuns> next;
+  std::array<std::vector<std::int64_t>, kBatches> next;
   next.fill(std::vector<std::int64_t>(static_cast<std::size_t>(count())));
-  for_each_member(progress.part(0.0, 0.5),
-                  [&](std::int64_t run, std::int64_t tile, std::size_t) { ++next[run][tile]; });
+  const Stages stages(run, {1, 1});
+  for_each_member(stages[0],
+                  [&](std::int64_t batch, std::int64_t tile, std::size_t) { ++next[batch][tile]; });
   std::int64_t total = 0;
   for (std::int64_t tile = 0; tile < count(); ++tile) {
     starts_.push_back(total);
-    for (std::vector<std::int64_t>& run : next) total += std::exchange(run[tile], total);
+    for (std::vector<std::int64_t>& batch : next) total += std::exchange(batch[tile], total);
   }
   starts_.push_back(total);
   members_.resize(static_cast<std::size_t>(total));
-  for_each_member(progress.part(0.5, 1.0), [&](std::int64_t run, std::int64_t tile, std::size_t k) {
-    members_[next[run][tile]++] = static_cast<std::uint32_t>(k);
+  for_each_member(stages[1], [&](std::int64_t batch, std::int64_t tile, std::size_t k) {
+    members_[next[batch][tile]++] = static_cast<std::uint32_t>(k);
   });
 }
 
@@ -81,8 +82,7 @@ CellWindow Tiles::window(std::int64_t tile) const {
   return {x0, y0, std::min(x0 + kSize, width_), std::min(y0 + kSize, height_)};
 }
 
-void Tiles::for_each_apart(int threads, const Progress& progress,
-                           const std::function<void(std::int64_t)>& body) const {
+void Tiles::for_each_apart(const Run& run, const std::function<void(std::int64_t)>& body) const {
   std::int64_t done = 0;
   for (int pass = 0; pass < kTileColors * kTileColors; ++pass) {
     std::vector<std::int64_t> members;
@@ -97,8 +97,7 @@ void Tiles::for_each_apart(int threads, const Progress& progress,
     const auto size = static_cast<std::int64_t>(members.size());
     const double total = static_cast<double>(count());
     parallel_for(
-        size, threads,
-        progress.part(static_cast<double>(done) / total, static_cast<double>(done + size) / total),
+        size, run.part(static_cast<double>(done) / total, static_cast<double>(done + size) / total),
         [&](std::int64_t i) { body(members[i]); });
     done += size;
   }

@@ -25,7 +25,7 @@ class Tiles {
   // The half-texel moments of a tile take 64 * 64 * 80 bytes, which fit in a second-level cache.
   static constexpr int kSize = 32;
 
-  Tiles(const TexelTriangles& triangles, const Progress& progress, int threads);
+  Tiles(const TexelTriangles& triangles, const Run& run);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
@@ -40,8 +40,7 @@ class Tiles {
 
   /// Calls body(tile) for all tiles in parallel, in passes. No two tiles of a pass are neighbors,
   /// not even around the image's edges.
-  void for_each_apart(int threads, const Progress& progress,
-                      const std::function<void(std::int64_t)>& body) const;
+  void for_each_apart(const Run& run, const std::function<void(std::int64_t)>& body) const;
 
  private:
   int width_;

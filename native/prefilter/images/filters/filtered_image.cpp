@@ -85,7 +85,7 @@ FilteredImage::FilteredImage(const TexelSource& source, const FindRead& find_rea
       if (is_multiplied_) find_byte_colors(options);
       return;
     }
-    copy_ = to_floats(source, options.threads);
+    copy_ = to_floats(source, options.run.threads());
     floats_ = copy_.view();
   } else {
     check(find_read, options);
@@ -123,16 +123,15 @@ void FilteredImage::find_byte_colors(const Options& options) {
   using Seen = std::array<std::array<unsigned char, 256>, 3>;
   constexpr int kRows = 64;
   std::vector<Seen> parts(static_cast<std::size_t>(range_count(source_.height, kRows)));
-  parallel_ranges(source_.height, kRows, options.threads, options.progress,
-                  [&](std::int64_t begin, std::int64_t end) {
-                    Seen& seen = parts[static_cast<std::size_t>(begin / kRows)];
-                    const std::uint8_t* texel = source_.byte_texel(0, static_cast<int>(begin));
-                    for (std::int64_t i = 0; i < (end - begin) * source_.width; ++i) {
-                      const unsigned char is_seen = texel[alpha_] != 0 ? 1 : 0;
-                      for (int c = 0; c < alpha_; ++c) seen[c][texel[c]] |= is_seen;
-                      texel += source_.channels;
-                    }
-                  });
+  parallel_ranges(source_.height, kRows, options.run, [&](std::int64_t begin, std::int64_t end) {
+    Seen& seen = parts[static_cast<std::size_t>(begin / kRows)];
+    const std::uint8_t* texel = source_.byte_texel(0, static_cast<int>(begin));
+    for (std::int64_t i = 0; i < (end - begin) * source_.width; ++i) {
+      const unsigned char is_seen = texel[alpha_] != 0 ? 1 : 0;
+      for (int c = 0; c < alpha_; ++c) seen[c][texel[c]] |= is_seen;
+      texel += source_.channels;
+    }
+  });
   for (int c = 0; c < alpha_; ++c) {
     ValueRange& range = colors_[c];
     range = kEmptyRange;
@@ -147,7 +146,7 @@ void FilteredImage::find_byte_colors(const Options& options) {
 }
 
 void FilteredImage::check(const FindRead& find_read, const Options& options) {
-  if (all_filterable(floats_, options.progress.part(0.0, 0.2), options.threads)) return;
+  if (all_filterable(floats_, options.run.part(0.0, 0.2))) return;
   const std::vector<unsigned char> read = find_read();
   Image& copy = own_copy();
   for (std::size_t i = 0; i < read.size(); ++i) {
@@ -181,21 +180,19 @@ void FilteredImage::multiply_by_alpha(const FindRead& find_read, const Options& 
   Image& copy = own_copy();
   std::vector<std::array<ValueRange, 3>> rows(static_cast<std::size_t>(copy.height));
   for (std::array<ValueRange, 3>& row : rows) row.fill(kEmptyRange);
-  parallel_for(copy.height, options.threads, options.progress.part(0.8, 1.0),
-               [&](std::int64_t row) {
-                 float* texel = copy.texel(0, static_cast<int>(row));
-                 const unsigned char* texel_read = read.data() + row * copy.width;
-                 for (int x = 0; x < copy.width; ++x, texel += copy.channels) {
-                   const float alpha = std::clamp(texel[alpha_], 0.0F, 1.0F);
-                   texel[alpha_] = alpha;
-                   for (int c = 0; c < alpha_; ++c) {
-                     ValueRange& seen = rows[row][c];
-                     if (alpha > 0.0F && texel_read[x] != 0)
-                       seen = widened(seen, {texel[c], texel[c]});
-                     texel[c] *= alpha;
-                   }
-                 }
-               });
+  parallel_for(copy.height, options.run.part(0.8, 1.0), [&](std::int64_t row) {
+    float* texel = copy.texel(0, static_cast<int>(row));
+    const unsigned char* texel_read = read.data() + row * copy.width;
+    for (int x = 0; x < copy.width; ++x, texel += copy.channels) {
+      const float alpha = std::clamp(texel[alpha_], 0.0F, 1.0F);
+      texel[alpha_] = alpha;
+      for (int c = 0; c < alpha_; ++c) {
+        ValueRange& seen = rows[row][c];
+        if (alpha > 0.0F && texel_read[x] != 0) seen = widened(seen, {texel[c], texel[c]});
+        texel[c] *= alpha;
+      }
+    }
+  });
   colors_.fill(kEmptyRange);
   for (const std::array<ValueRange, 3>& row : rows) {
     for (int c = 0; c < alpha_; ++c) colors_[c] = widened(colors_[c], row[c]);
@@ -221,13 +218,13 @@ ValueRange FilteredImage::solved_range(int channel, ValueRange bounds) const {
           std::clamp(own.high, bounds.low, bounds.high)};
 }
 
-void FilteredImage::divide_by_alpha(WrapModes wrap, const Progress& progress, int threads,
-                                    Image* level) const {
+void FilteredImage::divide_by_alpha(WrapModes wrap, const Run& run, Image* level) const {
   if (!is_multiplied_) return;
   // Colors below this alpha are invisible, and mostly rounding errors.
   constexpr float kMinVisibleAlpha = 1e-3F;
   std::vector<float> weights(level->view().texel_count());
-  parallel_for(level->height, threads, progress.part(0.0, 0.5), [&](std::int64_t row) {
+  const Stages stages(run, {1, 1});
+  parallel_for(level->height, stages[0], [&](std::int64_t row) {
     float* texel = level->texel(0, static_cast<int>(row));
     float* weight = weights.data() + row * level->width;
     for (int x = 0; x < level->width; ++x, texel += level->channels) {
@@ -240,7 +237,7 @@ void FilteredImage::divide_by_alpha(WrapModes wrap, const Progress& progress, in
       texel[alpha_] = std::clamp(alpha, 0.0F, 1.0F);
     }
   });
-  fill_holes(weights, wrap, alpha_, progress.part(0.5, 1.0), threads, level);
+  fill_holes(weights, wrap, alpha_, stages[1], level);
 }
 
 }  // namespace prefilter

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/value_range.h"
 #include "prefilter/base/wrap.h"
 
@@ -33,8 +33,7 @@ class FilteredImage {
     // Whether bytes are never converted as a whole, because the caller uses `read`.
     bool is_read_by_rows = false;
     const char* name = "image";  // in error messages
-    int threads = 0;
-    Progress progress;
+    Run run;
   };
 
   /// `find_read` is only called if some texels are not finite or not opaque. Throws Error if a
@@ -64,7 +63,7 @@ class FilteredImage {
 
   /// Divides the colors of a level by its alpha if they were multiplied. Colors with hardly any
   /// alpha are filled from their surroundings.
-  void divide_by_alpha(WrapModes wrap, const Progress& progress, int threads, Image* level) const;
+  void divide_by_alpha(WrapModes wrap, const Run& run, Image* level) const;
 
  private:
   void check(const FindRead& find_read, const Options& options);

@@ -15,12 +15,12 @@ struct Layer {
   std::vector<float> weights;  // clamped to 1, so that full texels are not outvoted
 };
 
-Layer pull(const Layer& fine, int channels, const Progress& progress, int threads) {
+Layer pull(const Layer& fine, int channels, const Run& run) {
   const int width = (fine.image.width + 1) / 2;
   const int height = (fine.image.height + 1) / 2;
   Layer coarse{Image(width, height, fine.image.channels),
                std::vector<float>(static_cast<std::size_t>(width) * height)};
-  parallel_for(height, threads, progress, [&](std::int64_t row) {
+  parallel_for(height, run, [&](std::int64_t row) {
     const int coarse_y = static_cast<int>(row);
     float* weights = coarse.weights.data() + static_cast<std::ptrdiff_t>(coarse_y) * width;
     for (int y = 2 * coarse_y; y < std::min(2 * coarse_y + 2, fine.image.height); ++y) {
@@ -68,8 +68,8 @@ void push_row(const Image& coarse, WrapModes wrap, int channels, int y, Layer* f
 
 }  // namespace
 
-void fill_holes(const std::vector<float>& weights, WrapModes wrap, int channels,
-                const Progress& progress, int threads, Image* image) {
+void fill_holes(const std::vector<float>& weights, WrapModes wrap, int channels, const Run& run,
+                Image* image) {
   assert(weights.size() == image->view().texel_count());
   const bool any_hole =
       std::any_of(weights.begin(), weights.end(), [](float w) { return !(w > 0.0F); });
@@ -79,14 +79,15 @@ void fill_holes(const std::vector<float>& weights, WrapModes wrap, int channels,
 
   std::vector<Layer> layers;
   layers.push_back({std::move(*image), weights});
+  const Stages stages(run, {4, 1, 1, 4});
   while (layers.back().image.width > 1 || layers.back().image.height > 1) {
     // The first layer takes most of the time.
-    const Progress part = layers.size() == 1 ? progress.part(0.0, 0.4) : progress.part(0.4, 0.5);
-    layers.push_back(pull(layers.back(), channels, part, threads));
+    const Run part = layers.size() == 1 ? stages[0] : stages[1];
+    layers.push_back(pull(layers.back(), channels, part));
   }
   for (std::size_t k = layers.size() - 1; k > 0; --k) {
-    const Progress part = k == 1 ? progress.part(0.6, 1.0) : progress.part(0.5, 0.6);
-    parallel_for(layers[k - 1].image.height, threads, part, [&](std::int64_t y) {
+    const Run part = k == 1 ? stages[3] : stages[2];
+    parallel_for(layers[k - 1].image.height, part, [&](std::int64_t y) {
       push_row(layers[k].image, wrap, channels, static_cast<int>(y), &layers[k - 1]);
     });
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 
 namespace prefilter {
@@ -16,7 +16,7 @@ namespace prefilter {
 /// pyramid, then pushes the coarser level's bilinear interpolation into the holes. Texels with a
 /// positive weight do not change, and nothing does if there are none. Values in holes are not read.
 /// `weights` holds one nonnegative number per texel.
-void fill_holes(const std::vector<float>& weights, WrapModes wrap, int channels,
-                const Progress& progress, int threads, Image* image);
+void fill_holes(const std::vector<float>& weights, WrapModes wrap, int channels, const Run& run,
+                Image* image);
 
 }  // namespace prefilter

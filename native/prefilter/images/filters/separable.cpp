@@ -64,13 +64,13 @@ void pad_rows(const ImageView& source, int y, Wrap mode, int before, int after,
 }
 
 template <int C>
-void filter_rows(const ImageView& source, const AxisTaps& taps, Wrap mode, const Progress& progress,
-                 int threads, Image* target) {
+void filter_rows(const ImageView& source, const AxisTaps& taps, Wrap mode, const Run& run,
+                 Image* target) {
   constexpr int kRows = rows_at_once(C);
   constexpr int kValues = kRows * C;
   const int before = std::max(0, -first_source(taps));
   const int after = std::max(0, end_source(taps) - source.width);
-  parallel_ranges(source.height, kRows, threads, progress, [&](int begin, int end) {
+  parallel_ranges(source.height, kRows, run, [&](int begin, int end) {
     std::vector<double> padded;
     pad_rows<C>(source, begin, mode, before, after, &padded);
     for (int x = 0; x < target->width; ++x) {
@@ -90,21 +90,20 @@ void filter_rows(const ImageView& source, const AxisTaps& taps, Wrap mode, const
   });
 }
 
-Image filter_rows(const ImageView& source, const AxisTaps& taps, Wrap mode,
-                  const Progress& progress, int threads) {
+Image filter_rows(const ImageView& source, const AxisTaps& taps, Wrap mode, const Run& run) {
   Image target(static_cast<int>(taps.size()), source.height, source.channels);
   switch (source.channels) {
     case 1:
-      filter_rows<1>(source, taps, mode, progress, threads, &target);
+      filter_rows<1>(source, taps, mode, run, &target);
       break;
     case 2:
-      filter_rows<2>(source, taps, mode, progress, threads, &target);
+      filter_rows<2>(source, taps, mode, run, &target);
       break;
     case 3:
-      filter_rows<3>(source, taps, mode, progress, threads, &target);
+      filter_rows<3>(source, taps, mode, run, &target);
       break;
     default:
-      filter_rows<4>(source, taps, mode, progress, threads, &target);
+      filter_rows<4>(source, taps, mode, run, &target);
       break;
   }
   return target;
@@ -131,8 +130,7 @@ void add_rows(const WeightedRow* rows, std::ptrdiff_t begin, std::ptrdiff_t coun
   }
 }
 
-Image filter_columns(const ImageView& source, const AxisTaps& taps, Wrap mode,
-                     const Progress& progress, int threads) {
+Image filter_columns(const ImageView& source, const AxisTaps& taps, Wrap mode, const Run& run) {
   Image target(source.width, static_cast<int>(taps.size()), source.channels);
   std::size_t most_taps = 1;
   for (const Taps& texel : taps) most_taps = std::max(most_taps, texel.weights.size());
@@ -143,7 +141,7 @@ Image filter_columns(const ImageView& source, const AxisTaps& taps, Wrap mode,
       std::clamp<std::size_t>(kMaxBlockTerms / most_taps, 16, kMaxBlockValues));
   const std::ptrdiff_t row_values = static_cast<std::ptrdiff_t>(source.width) * source.channels;
   const std::int64_t blocks = range_count(row_values, block_values);
-  parallel_for(target.height * blocks, threads, progress, [&](std::int64_t item) {
+  parallel_for(target.height * blocks, run, [&](std::int64_t item) {
     const auto y = static_cast<int>(item / blocks);
     const std::ptrdiff_t begin = item % blocks * block_values;
     const std::ptrdiff_t count = std::min(block_values, row_values - begin);
@@ -177,25 +175,25 @@ AxisTaps resampling_taps(const Kernel& kernel, int source_size, int target_size)
 }
 
 Image filter_separably(const ImageView& source, const AxisTaps& along_x, const AxisTaps& along_y,
-                       WrapModes wrap, const Progress& progress, int threads) {
+                       WrapModes wrap, const Run& run) {
   if (along_x.empty() && along_y.empty()) return Image(source);
-  if (along_y.empty()) return filter_rows(source, along_x, wrap.u, progress, threads);
-  if (along_x.empty()) return filter_columns(source, along_y, wrap.v, progress, threads);
+  if (along_y.empty()) return filter_rows(source, along_x, wrap.u, run);
+  if (along_x.empty()) return filter_columns(source, along_y, wrap.v, run);
   // If only the rows grow, columns come first: the intermediate image is then no larger than both
   // the source and the target.
   if (std::cmp_greater(along_x.size(), source.width) &&
       std::cmp_less(along_y.size(), source.height)) {
-    const Image columns = filter_columns(source, along_y, wrap.v, progress.part(0.0, 0.5), threads);
-    return filter_rows(columns.view(), along_x, wrap.u, progress.part(0.5, 1.0), threads);
+    const Image columns = filter_columns(source, along_y, wrap.v, run.part(0.0, 0.5));
+    return filter_rows(columns.view(), along_x, wrap.u, run.part(0.5, 1.0));
   }
-  const Image rows = filter_rows(source, along_x, wrap.u, progress.part(0.0, 0.7), threads);
-  return filter_columns(rows.view(), along_y, wrap.v, progress.part(0.7, 1.0), threads);
+  const Image rows = filter_rows(source, along_x, wrap.u, run.part(0.0, 0.7));
+  return filter_columns(rows.view(), along_y, wrap.v, run.part(0.7, 1.0));
 }
 
 Image filter_separably(const ImageView& source, int width, int height, const Kernel& kernel,
-                       WrapModes wrap, const Progress& progress, int threads) {
+                       WrapModes wrap, const Run& run) {
   return filter_separably(source, resampling_taps(kernel, source.width, width),
-                          resampling_taps(kernel, source.height, height), wrap, progress, threads);
+                          resampling_taps(kernel, source.height, height), wrap, run);
 }
 
 }  // namespace prefilter

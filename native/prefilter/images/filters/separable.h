@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/images/kernel.h"
 
@@ -22,12 +22,12 @@ AxisTaps resampling_taps(const Kernel& kernel, int source_size, int target_size)
 /// Filters an image: texel (i, j) of the result is the sum over the taps of i along x and of j
 /// along y. The wrap mode defines the values of taps outside the source.
 Image filter_separably(const ImageView& source, const AxisTaps& along_x, const AxisTaps& along_y,
-                       WrapModes wrap, const Progress& progress, int threads);
+                       WrapModes wrap, const Run& run);
 
 /// Resizes an image to width x height texels, each the kernel-weighted mean of the source around
 /// it. An axis whose size does not change is not filtered. The wrap mode defines the texels outside
 /// the source.
 Image filter_separably(const ImageView& source, int width, int height, const Kernel& kernel,
-                       WrapModes wrap, const Progress& progress, int threads);
+                       WrapModes wrap, const Run& run);
 
 }  // namespace prefilter

@@ -268,13 +268,12 @@ double row_values(int source_width, int width, int channels) {
 
 template <int C>
 Image filtered(const FilteredImage& source, const AxisTaps& along_x, const AxisTaps& along_y,
-               int rows_at_once, WrapModes wrap, const Progress& progress, int threads) {
+               int rows_at_once, WrapModes wrap, const Run& run) {
   const ByteFilter<C> filter(source, along_x, along_y, wrap);
   Image target(static_cast<int>(along_x.size()), static_cast<int>(along_y.size()), C);
-  parallel_ranges(target.height, rows_at_once, threads, progress,
-                  [&](std::int64_t begin, std::int64_t end) {
-                    filter.make(static_cast<int>(begin), static_cast<int>(end), &target);
-                  });
+  parallel_ranges(target.height, rows_at_once, run, [&](std::int64_t begin, std::int64_t end) {
+    filter.make(static_cast<int>(begin), static_cast<int>(end), &target);
+  });
   return target;
 }
 
@@ -286,25 +285,24 @@ bool reads_few_rows(const TexelSource& image, int width, int height, const Kerne
 }
 
 Image filter_bytes_separably(const FilteredImage& bytes, int width, int height,
-                             const Kernel& kernel, WrapModes wrap, const Progress& progress,
-                             int threads) {
+                             const Kernel& kernel, WrapModes wrap, const Run& run) {
   const AxisTaps along_x = taps_or_itself(kernel, bytes.width(), width);
   const AxisTaps along_y = taps_or_itself(kernel, bytes.height(), height);
   const RowsRead read(bytes.height(), height, kernel);
   const double most = kMaxValuesRead / row_values(bytes.width(), width, bytes.channels());
   // Enough bands for all threads; the first source rows of each are read for the previous band too.
-  const double share = static_cast<double>(height) / (2 * resolve_threads(threads));
+  const double share = static_cast<double>(height) / (2 * resolve_threads(run.threads()));
   const auto rows = static_cast<int>(
       std::clamp(std::min(share, (most - read.of_one) / read.by_each), 1.0, kMaxBandRows));
   switch (bytes.channels()) {
     case 1:
-      return filtered<1>(bytes, along_x, along_y, rows, wrap, progress, threads);
+      return filtered<1>(bytes, along_x, along_y, rows, wrap, run);
     case 2:
-      return filtered<2>(bytes, along_x, along_y, rows, wrap, progress, threads);
+      return filtered<2>(bytes, along_x, along_y, rows, wrap, run);
     case 3:
-      return filtered<3>(bytes, along_x, along_y, rows, wrap, progress, threads);
+      return filtered<3>(bytes, along_x, along_y, rows, wrap, run);
     default:
-      return filtered<4>(bytes, along_x, along_y, rows, wrap, progress, threads);
+      return filtered<4>(bytes, along_x, along_y, rows, wrap, run);
   }
 }
 

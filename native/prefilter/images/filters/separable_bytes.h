@@ -15,7 +15,6 @@ bool reads_few_rows(const TexelSource& image, int width, int height, const Kerne
 /// are floats, as bytes need no more precision, and only a few rows at a time are converted.
 /// Requires `reads_few_rows`.
 Image filter_bytes_separably(const FilteredImage& bytes, int width, int height,
-                             const Kernel& kernel, WrapModes wrap, const Progress& progress,
-                             int threads);
+                             const Kernel& kernel, WrapModes wrap, const Run& run);
 
 }  // namespace prefilter

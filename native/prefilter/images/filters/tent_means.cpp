@@ -29,7 +29,7 @@ struct Weighed {
 Image tent_means(const ImageView& image, const std::vector<unsigned char>& read, WrapModes wrap,
                  int threads) {
   Image means(image);
-  parallel_for(image.height, threads, Progress(), [&](std::int64_t row) {
+  parallel_for(image.height, Run(threads), [&](std::int64_t row) {
     const int y = static_cast<int>(row);
     const auto counts = [&](int x, int from_y) {
       return read.empty() || read[static_cast<std::size_t>(from_y) * image.width + x] != 0;

@@ -86,8 +86,8 @@ class TentAxis {
 };
 
 // Cells of equal parity share no texels. The last cell of an odd ring is added separately.
-void add_cells(const TentAxis& x_axis, const TentAxis& y_axis, const Progress& progress,
-               int threads, NinePointSystem<float>* system) {
+void add_cells(const TentAxis& x_axis, const TentAxis& y_axis, const Run& run,
+               NinePointSystem<float>* system) {
   const auto add_row = [&](int row) {
     const LineProducts along_y = y_axis.products(row);
     for (int column = x_axis.first_cell(); column <= x_axis.last_cell(); ++column) {
@@ -105,7 +105,7 @@ void add_cells(const TentAxis& x_axis, const TentAxis& y_axis, const Progress& p
   const int last = y_axis.last_cell();
   for (const int parity : {0, 1}) {
     const int count = (last - first - parity + 1) / 2;
-    parallel_for(count, threads, progress.part(0.5 * parity, 0.5 + 0.5 * parity),
+    parallel_for(count, run.part(0.5 * parity, 0.5 + 0.5 * parity),
                  [&](std::int64_t i) { add_row(first + parity + 2 * static_cast<int>(i)); });
   }
   if (first <= last) add_row(last);
@@ -128,10 +128,10 @@ class LanesOfChannels {
 // Ranges of the system's texels: the intersection of both ranges, minus the offset.
 TexelRanges lane_ranges(const RangesAround& around, const SolveOptions& solve,
                         const LanesOfChannels& lane, Lanes offset,
-                        const NinePointSystem<float>& system) {
+                        const NinePointSystem<float>& system, const Run& run) {
   TexelRanges ranges{std::vector<LaneValues>(system.size()),
                      std::vector<LaneValues>(system.size())};
-  parallel_for(system.height(), solve.threads, Progress(), [&](std::int64_t row) {
+  parallel_for(system.height(), run, [&](std::int64_t row) {
     const auto y = static_cast<int>(row);
     for (int x = 0; x < system.width(); ++x) {
       const std::ptrdiff_t at = system.at(x, y);
@@ -151,14 +151,13 @@ TexelRanges lane_ranges(const RangesAround& around, const SolveOptions& solve,
 }  // namespace
 
 Image fit_bilinearly(const ImageView& source, int width, int height, WrapModes wrap,
-                     const SolveOptions& solve, const RangesAround* around,
-                     const Progress& progress) {
+                     const SolveOptions& solve, const RangesAround* around, const Run& run) {
   const TentAxis x_axis(source.width, width, wrap.u);
   const TentAxis y_axis(source.height, height, wrap.v);
-  Image level = filter_separably(source, x_axis.mean_taps(), y_axis.mean_taps(), wrap,
-                                 progress.part(0.0, 0.3), solve.threads);
+  const Stages stages(run, {6, 2, 1, 10, 1});
+  Image level = filter_separably(source, x_axis.mean_taps(), y_axis.mean_taps(), wrap, stages[0]);
   NinePointSystem<float> system(width, height, wrap);
-  add_cells(x_axis, y_axis, progress.part(0.3, 0.4), solve.threads, &system);
+  add_cells(x_axis, y_axis, stages[1], &system);
   system.make_texels();
 
   const LanesOfChannels lane(level.channels, solve);
@@ -172,7 +171,7 @@ Image fit_bilinearly(const ImageView& source, int width, int height, WrapModes w
     const float from = offset[lane(c)];
     by_lanes.ranges[lane(c)] = {solve.ranges[c].low - from, solve.ranges[c].high - from};
   }
-  parallel_for(height, solve.threads, progress.part(0.4, 0.45), [&](std::int64_t row) {
+  parallel_for(height, stages[2], [&](std::int64_t row) {
     const auto y = static_cast<int>(row);
     for (int x = 0; x < width; ++x) {
       const auto mass = static_cast<float>(x_axis.mass(x) * y_axis.mass(y));
@@ -185,12 +184,12 @@ Image fit_bilinearly(const ImageView& source, int width, int height, WrapModes w
   });
   TexelRanges ranges;
   if (around != nullptr) {
-    ranges = lane_ranges(*around, solve, lane, offset, system);
+    ranges = lane_ranges(*around, solve, lane, offset, system, Run(run.threads()));
     by_lanes.texel_ranges = &ranges;
   }
   system.invert_diagonal();
-  system.solve(by_lanes, progress.part(0.45, 0.95));
-  parallel_for(height, solve.threads, progress.part(0.95, 1.0), [&](std::int64_t row) {
+  system.solve(by_lanes, stages[3]);
+  parallel_for(height, stages[4], [&](std::int64_t row) {
     const auto y = static_cast<int>(row);
     for (int x = 0; x < width; ++x) {
       const Lanes solved = system.texel(system.at(x, y)).v + offset;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/solve/nine_point_system.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/images/resize/ranges_around.h"
@@ -20,7 +20,6 @@ namespace prefilter {
 /// each texel to its own range; if ranges_times_alpha is set, that is the range of colors before
 /// multiplication.
 Image fit_bilinearly(const ImageView& source, int width, int height, WrapModes wrap,
-                     const SolveOptions& solve, const RangesAround* around,
-                     const Progress& progress);
+                     const SolveOptions& solve, const RangesAround* around, const Run& run);
 
 }  // namespace prefilter

@@ -341,7 +341,7 @@ void write(const Sums& sums, int channels, float* texel) {
 }  // namespace
 
 Image filter_radially(const ImageView& source, int width, int height, int radius, WrapModes wrap,
-                      const Progress& progress, int threads) {
+                      const Run& run) {
   const Filter filter(source, width, height, radius, wrap);
   // Parts are short enough for prompt cancellation: if necessary, even the taps of a single texel
   // are divided.
@@ -378,12 +378,12 @@ Image filter_radially(const ImageView& source, int width, int height, int radius
   };
   const std::int64_t count = range_count(height, band) * blocks;
   if (pieces == 1) {
-    parallel_for(count, threads, progress,
+    parallel_for(count, run,
                  [&](std::int64_t block) { finish(block, filter.sums(part_of(block, 0))); });
     return target;
   }
   std::vector<std::vector<Sums>> sums(static_cast<std::size_t>(count * pieces));
-  parallel_for(count * pieces, threads, progress, [&](std::int64_t i) {
+  parallel_for(count * pieces, run, [&](std::int64_t i) {
     sums[static_cast<std::size_t>(i)] = filter.sums(part_of(i / pieces, i % pieces));
   });
   for (std::int64_t block = 0; block < count; ++block) {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 
 namespace prefilter {
@@ -13,6 +13,6 @@ namespace prefilter {
 /// WindowedJinc of their distance. The unit along each axis is the larger of source and target
 /// texels.
 Image filter_radially(const ImageView& source, int width, int height, int radius, WrapModes wrap,
-                      const Progress& progress, int threads);
+                      const Run& run);
 
 }  // namespace prefilter

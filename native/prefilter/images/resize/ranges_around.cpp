@@ -112,13 +112,13 @@ class RowRanges {
 }  // namespace
 
 RangesAround ranges_around(const TexelSource& source, std::optional<int> alpha, int width,
-                           int height, WrapModes wrap, const Progress& progress, int threads) {
+                           int height, WrapModes wrap, const Run& run) {
   const auto channels = static_cast<std::size_t>(source.channels);
   RangesAround result{Image(width, height, source.channels), Image(width, height, source.channels)};
   const Around along_x(source.width, width, wrap.u);
   const Around along_y(source.height, height, wrap.v);
   const RowRanges rows(source, alpha);
-  parallel_for(height, threads, progress, [&](std::int64_t row) {
+  parallel_for(height, run, [&](std::int64_t row) {
     const auto y = static_cast<int>(row);
     Ranges columns(static_cast<std::size_t>(source.width) * channels);
     along_y.each(y, [&](int from) { rows.add(from, &columns); });
@@ -143,7 +143,7 @@ RangesAround ranges_around(const TexelSource& source, std::optional<int> alpha, 
 }
 
 void limit_to(const RangesAround& ranges, int threads, Image* image) {
-  parallel_for(image->height, threads, Progress(), [&](std::int64_t row) {
+  parallel_for(image->height, Run(threads), [&](std::int64_t row) {
     const auto y = static_cast<int>(row);
     float* const values = image->texel(0, y);
     const float* const low = ranges.low.texel(0, y);

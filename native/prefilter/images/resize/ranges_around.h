@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 
 namespace prefilter {
@@ -23,7 +23,7 @@ struct RangesAround {
 /// do not count. Channels without any texel that counts are unlimited. The wrap mode defines the
 /// texels outside the image.
 RangesAround ranges_around(const TexelSource& source, std::optional<int> alpha, int width,
-                           int height, WrapModes wrap, const Progress& progress, int threads);
+                           int height, WrapModes wrap, const Run& run);
 
 /// Clamps texels to the ranges.
 void limit_to(const RangesAround& ranges, int threads, Image* image);

@@ -43,8 +43,8 @@ void check_arguments(const TexelSource& image, int width, int height,
   check_channels({nullptr, image.width, image.height, image.channels});
   check_size("width", width);
   check_size("height", height);
-  if (options.threads < 0) {
-    throw_invalid("threads: " + std::to_string(options.threads) +
+  if (options.run.threads() < 0) {
+    throw_invalid("threads: " + std::to_string(options.run.threads()) +
                   "; a positive number is needed, or 0 for all processors");
   }
   // The intermediate image after filtering one axis is no larger than the larger of both images.
@@ -76,15 +76,12 @@ class Resizer {
 
   Image operator()(const Kernel* kernel) const {
     if (image_.floats().data == nullptr) {
-      return filter_bytes_separably(image_, width_, height_, *kernel, options_.wrap, progress(),
-                                    options_.threads);
+      return filter_bytes_separably(image_, width_, height_, *kernel, options_.wrap, run());
     }
-    return filter_separably(image_.floats(), width_, height_, *kernel, options_.wrap, progress(),
-                            options_.threads);
+    return filter_separably(image_.floats(), width_, height_, *kernel, options_.wrap, run());
   }
   Image operator()(const RadialFilter& filter) const {
-    return filter_radially(image_.floats(), width_, height_, filter.radius, options_.wrap,
-                           progress(), options_.threads);
+    return filter_radially(image_.floats(), width_, height_, filter.radius, options_.wrap, run());
   }
   Image operator()(const BilinearFit& /*filter*/) const {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -96,13 +93,11 @@ class Resizer {
     }
     solve.ranges_times_alpha = image_.is_multiplied();
     solve.tolerance = 1e-6;
-    solve.threads = options_.threads;
-    return fit_bilinearly(image_.floats(), width_, height_, options_.wrap, solve, around_,
-                          progress());
+    return fit_bilinearly(image_.floats(), width_, height_, options_.wrap, solve, around_, run());
   }
 
  private:
-  Progress progress() const { return options_.progress.part(0.1, 0.9); }
+  Run run() const { return options_.run.part(0.1, 0.9); }
 
   const FilteredImage& image_;
   const RangesAround* around_;
@@ -126,25 +121,24 @@ Image resize(const TexelSource& image, int width, int height, const ResizeOption
   const FilteredImage filtered(image, [&] { return std::vector<unsigned char>(count, 1); },
                                {.alpha = alpha,
                                 .is_read_by_rows = is_read_by_rows,
-                                .threads = options.threads,
-                                .progress = options.progress.part(0.0, is_limited ? 0.05 : 0.1)});
+                                .run = options.run.part(0.0, is_limited ? 0.05 : 0.1)});
   std::optional<RangesAround> around;
   if (is_limited) {
     around = ranges_around(image, filtered.is_multiplied() ? alpha : std::nullopt, width, height,
-                           options.wrap, options.progress.part(0.05, 0.1), options.threads);
+                           options.wrap, options.run.part(0.05, 0.1));
   }
   const Resizer resizer(filtered, around ? &*around : nullptr, width, height, options);
   Image result = is_same_size ? Image(filtered.floats()) : std::visit(resizer, options.filter);
-  filtered.divide_by_alpha(options.wrap, options.progress.part(0.9, 1.0), options.threads, &result);
-  if (around) limit_to(*around, options.threads, &result);
+  filtered.divide_by_alpha(options.wrap, options.run.part(0.9, 1.0), &result);
+  if (around) limit_to(*around, options.run.threads(), &result);
   if (options.constrained) {
-    parallel_for(height, options.threads, Progress(), [&](std::int64_t y) {
+    parallel_for(height, Run(options.run.threads()), [&](std::int64_t y) {
       float* const row = result.texel(0, static_cast<int>(y));
       std::transform(row, row + static_cast<std::ptrdiff_t>(width) * result.channels, row,
                      [](float value) { return std::clamp(value, 0.0F, 1.0F); });
     });
   }
-  options.progress.report(1.0);
+  options.run.report(1.0);
   return result;
 }
 

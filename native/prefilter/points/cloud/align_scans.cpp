@@ -69,16 +69,15 @@ std::vector<MotionPair> find_pairs(const MovedScan& scan, std::span<const std::u
 class Aligner {
  public:
   Aligner(std::span<const ScanView> scans, const AlignOptions& options)
-      : threads_(options.threads) {
+      : threads_(options.run.threads()) {
     const Box box = box_of(scans);
     origin_ = middle_of(box);
     reach_ = options.reach.value_or(kReachShare * length(box.high - box.low));
     const double count = static_cast<double>(scans.size());
     for (std::size_t s = 0; s < scans.size(); ++s) {
-      const Progress part =
-          options.progress.part(kReadProgress * static_cast<double>(s) / count,
-                                kReadProgress * static_cast<double>(s + 1) / count);
-      scans_.emplace_back(scans[s], origin_, part, threads_);
+      const Run part = options.run.part(kReadProgress * static_cast<double>(s) / count,
+                                        kReadProgress * static_cast<double>(s + 1) / count);
+      scans_.emplace_back(scans[s], origin_, part);
     }
     const std::size_t each = kTotalSamples / (scans.size() * (scans.size() - 1));
     for (const MovedScan& scan : scans_) {
@@ -88,29 +87,29 @@ class Aligner {
     least_reach_ = std::min(reach_, kMinReach * spacing_);
   }
 
-  Alignment align(int iterations, const Progress& progress) {
+  Alignment align(int iterations, const Run& run) {
     Alignment result;
     result.before =
-        median_distance(pairs(least_reach_, progress.part(kReadProgress, kFirstPairsProgress)));
+        median_distance(pairs(least_reach_, run.part(kReadProgress, kFirstPairsProgress)));
     double reach = reach_;
     for (int k = 0; k < iterations; ++k) {
       const double done = static_cast<double>(k) / iterations;
-      const Progress part =
-          progress.part(kFirstPairsProgress + (kLastPairsProgress - kFirstPairsProgress) * done,
-                        kFirstPairsProgress +
-                            (kLastPairsProgress - kFirstPairsProgress) * (done + 1.0 / iterations));
+      const Run part =
+          run.part(kFirstPairsProgress + (kLastPairsProgress - kFirstPairsProgress) * done,
+                   kFirstPairsProgress +
+                       (kLastPairsProgress - kFirstPairsProgress) * (done + 1.0 / iterations));
       const double moved = step(pairs(reach, part));
       if (reach <= least_reach_ && moved < kMinMotion * spacing_) break;
       reach = std::max(least_reach_, kReachDecay * reach);
     }
-    const std::vector<ScanPairs> last = pairs(least_reach_, progress.part(kLastPairsProgress, 1.0));
+    const std::vector<ScanPairs> last = pairs(least_reach_, run.part(kLastPairsProgress, 1.0));
     result.after = median_distance(last);
     result.pairs.resize(scans_.size());
     for (const ScanPairs& scan_pairs : last)
       result.pairs[scan_pairs.scan] += scan_pairs.pairs.size();
     for (const MovedScan& scan : scans_)
       result.motions.push_back(relative_to(scan.motion, Vector3{} - origin_));
-    progress.report(1.0);
+    run.report(1.0);
     return result;
   }
 
@@ -120,14 +119,14 @@ class Aligner {
   static constexpr double kFirstPairsProgress = 0.22;
   static constexpr double kLastPairsProgress = 0.98;
 
-  std::vector<ScanPairs> pairs(double reach, const Progress& progress) const {
+  std::vector<ScanPairs> pairs(double reach, const Run& run) const {
     std::vector<ScanPairs> all;
     for (std::size_t s = 0; s < scans_.size(); ++s) {
       for (std::size_t o = 0; o < scans_.size(); ++o) {
         if (s != o) all.push_back({s, o, {}});
       }
     }
-    parallel_for(static_cast<std::int64_t>(all.size()), threads_, progress, [&](std::int64_t i) {
+    parallel_for(static_cast<std::int64_t>(all.size()), run, [&](std::int64_t i) {
       ScanPairs& scan_pairs = all[static_cast<std::size_t>(i)];
       scan_pairs.pairs = find_pairs(scans_[scan_pairs.scan], samples_[scan_pairs.scan],
                                     scans_[scan_pairs.other], reach);
@@ -164,7 +163,7 @@ class Aligner {
 
 Alignment align_scans(std::span<const ScanView> scans, const AlignOptions& options) {
   check_alignment(scans, options, 2);
-  return Aligner(scans, options).align(options.iterations, options.progress);
+  return Aligner(scans, options).align(options.iterations, options.run);
 }
 
 }  // namespace prefilter

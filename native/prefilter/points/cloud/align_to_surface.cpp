@@ -20,14 +20,14 @@ namespace {
 // A surface relative to an origin, with its search structure.
 class PlacedSurface {
  public:
-  PlacedSurface(const InputMesh& mesh, const Vector3& origin, const Progress& progress, int threads)
+  PlacedSurface(const InputMesh& mesh, const Vector3& origin, const Run& run)
       : positions_(moved_to(origin, mesh)),
         triangles_(mesh.triangles),
-        nearest_({positions_, triangles_}, progress, threads) {}
+        nearest_({positions_, triangles_}, run) {}
 
   // Pairs samples of a scan with points of the surface.
   std::vector<MotionPair> pairs(const MovedScan& scan, std::span<const std::uint32_t> samples,
-                                double reach, const Progress& progress, int threads) const;
+                                double reach, const Run& run) const;
 
  private:
   static std::vector<Vector3> moved_to(const Vector3& origin, const InputMesh& mesh) {
@@ -48,13 +48,13 @@ class PlacedSurface {
 
 std::vector<MotionPair> PlacedSurface::pairs(const MovedScan& scan,
                                              std::span<const std::uint32_t> samples, double reach,
-                                             const Progress& progress, int threads) const {
+                                             const Run& run) const {
   std::vector<Vector3> points;
   for (const std::uint32_t place : samples) {
     points.push_back(moved(scan.motion, scan.position(place)));
   }
   const Vector3 center = moved(scan.motion, scan.center());
-  const std::vector<SurfacePoint> nearest = nearest_.find(points, progress, threads);
+  const std::vector<SurfacePoint> nearest = nearest_.find(points, run);
   std::vector<MotionPair> pairs;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SurfacePoint& surface_point = nearest[i];
@@ -104,7 +104,7 @@ Alignment align_to_surface(std::span<const ScanView> scans, std::span<const Rigi
                   std::to_string(scans.size()) + " scans; one for each is needed");
   }
   const Vector3 origin = middle_of(box_of(scans));
-  const PlacedSurface placed(surface, origin, options.progress.part(0.0, 0.1), options.threads);
+  const PlacedSurface placed(surface, origin, options.run.part(0.0, 0.1));
   Alignment result;
   result.pairs.resize(scans.size());
   std::vector<double> before;
@@ -113,14 +113,14 @@ Alignment align_to_surface(std::span<const ScanView> scans, std::span<const Rigi
     const auto share = [&](double done) {
       return 0.1 + 0.9 * (static_cast<double>(s) + done) / static_cast<double>(scans.size());
     };
-    const Progress progress = options.progress.part(share(0.0), share(1.0));
-    MovedScan scan(scans[s], origin, progress.part(0.0, 0.2), options.threads);
+    const Run run = options.run.part(share(0.0), share(1.0));
+    MovedScan scan(scans[s], origin, run.part(0.0, 0.2));
     scan.motion = relative_to(motions[s], origin);
     const std::vector<std::uint32_t> samples = scan.samples(kMaxSamples);
     const double most = kMinReach * scan.spacing();
     const double reach = std::min(options.reach.value_or(most), most);
     const auto pairs_at = [&](double from, double to) {
-      return placed.pairs(scan, samples, reach, progress.part(from, to), options.threads);
+      return placed.pairs(scan, samples, reach, run.part(from, to));
     };
     std::vector<MotionPair> pairs = pairs_at(0.2, 0.25);
     add_to(pairs, s, &result, &before);
@@ -142,7 +142,7 @@ Alignment align_to_surface(std::span<const ScanView> scans, std::span<const Rigi
   result.motions.front() = motions.front();
   result.before = median_of(&before);
   result.after = median_of(&after);
-  options.progress.report(1.0);
+  options.run.report(1.0);
   return result;
 }
 

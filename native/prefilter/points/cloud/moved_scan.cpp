@@ -98,13 +98,11 @@ void check_alignment(std::span<const ScanView> scans, const AlignOptions& option
   }
 }
 
-MovedScan::MovedScan(const ScanView& scan, const Vector3& origin, const Progress& progress,
-                     int threads)
-    : MovedScan(usable_points(scan, origin), progress, threads) {}
+MovedScan::MovedScan(const ScanView& scan, const Vector3& origin, const Run& run)
+    : MovedScan(usable_points(scan, origin), run) {}
 
-MovedScan::MovedScan(std::pair<std::vector<Vector3>, std::vector<Vector3>> points,
-                     const Progress& progress, int threads)
-    : search_(points.first, progress, threads), normals_(search_.positions().size()) {
+MovedScan::MovedScan(std::pair<std::vector<Vector3>, std::vector<Vector3>> points, const Run& run)
+    : search_(points.first, run), normals_(search_.positions().size()) {
   for (std::size_t i = points.first.size(); i-- > 0;) {
     const std::uint32_t place = search_.places()[i];
     if (place != NeighborSearch::kNowhere) normals_[place] = points.second[i];

@@ -37,7 +37,7 @@ inline constexpr std::size_t kMaxSamples = 20'000;  // per scan
 /// The points of a scan that have a normal, relative to an origin.
 class MovedScan {
  public:
-  MovedScan(const ScanView& scan, const Vector3& origin, const Progress& progress, int threads);
+  MovedScan(const ScanView& scan, const Vector3& origin, const Run& run);
 
   const NeighborSearch& search() const { return search_; }
   const Vector3& position(std::uint32_t place) const { return search_.positions()[place]; }
@@ -59,8 +59,7 @@ class MovedScan {
 
  private:
   // Positions and unit normals.
-  MovedScan(std::pair<std::vector<Vector3>, std::vector<Vector3>> points, const Progress& progress,
-            int threads);
+  MovedScan(std::pair<std::vector<Vector3>, std::vector<Vector3>> points, const Run& run);
 
   NeighborSearch search_;
   std::vector<Vector3> normals_;  // by index, of length 1

@@ -36,9 +36,10 @@ void check_arguments(int neighbours, double factor) {
 }  // namespace
 
 std::vector<bool> find_outliers(std::span<const Vector3> points, int neighbours, double factor,
-                                const Progress& progress, int threads) {
+                                const Run& run) {
   check_arguments(neighbours, factor);
-  const NeighborSearch search(points, progress.part(0.0, 0.2), threads);
+  const Stages stages(run, {1, 2, 2});
+  const NeighborSearch search(points, stages[0]);
   const std::size_t places = search.positions().size();
   std::vector<bool> result(points.size());
   // a position is its own nearest neighbor
@@ -69,14 +70,14 @@ std::vector<bool> find_outliers(std::span<const Vector3> points, int neighbours,
   };
   if (places > static_cast<std::size_t>(kMinOutlierNeighbors)) {
     const auto count = static_cast<std::int64_t>(places);
-    parallel_ranges(count, kPointsPerTask, threads, progress.part(0.2, 0.6), measure);
-    parallel_ranges(count, kPointsPerTask, threads, progress.part(0.6, 1.0), compare);
+    parallel_ranges(count, kPointsPerTask, stages[1], measure);
+    parallel_ranges(count, kPointsPerTask, stages[2], compare);
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::uint32_t place = search.places()[i];
     result[i] = place == NeighborSearch::kNowhere || is_outlier[place] != 0;
   }
-  progress.report(1.0);
+  run.report(1.0);
   return result;
 }
 

@@ -75,11 +75,11 @@ std::vector<std::size_t> usable_indices(std::span<const Vector3> points,
 
 std::vector<Sample> find_samples(const Surface& surface, std::span<const Vector3> points,
                                  const std::vector<std::size_t>& chosen,
-                                 const PaintOptions& options, const Progress& progress) {
+                                 const PaintOptions& options, const Run& run) {
   std::vector<Vector3> places;
   for (const std::size_t i : chosen) places.push_back(points[i]);
   const std::vector<SurfacePoint> nearest =
-      nearest_points(places, {surface.positions, surface.triangles}, progress, options.threads);
+      nearest_points(places, {surface.positions, surface.triangles}, run);
   const double reach = options.reach.value_or(std::numeric_limits<double>::infinity());
   std::vector<Sample> samples;
   for (std::size_t k = 0; k < chosen.size(); ++k) {
@@ -211,9 +211,9 @@ std::array<ValueRange, kMaxChannels> ranges_of(const std::vector<Sample>& sample
 // Solves the system, and fills the other texels. Reuses `weights`.
 Image solved(const PaintOptions& options, const SolveOptions& solving, int channels,
              std::vector<float>* weights, System* system) {
-  const Progress& progress = options.progress;
+  const Run& run = options.run;
   system->invert_diagonal();
-  system->solve(solving, progress.part(0.5, 0.95));
+  system->solve(solving, run.part(0.5, 0.95));
   auto weight = weights->begin();
   for (int y = 0; y < options.height; ++y) {
     for (int x = 0; x < options.width; ++x) {
@@ -221,8 +221,8 @@ Image solved(const PaintOptions& options, const SolveOptions& solving, int chann
     }
   }
   Image image = system->take_image(channels);
-  fill_holes(*weights, options.wrap, channels, progress.part(0.95, 1.0), options.threads, &image);
-  progress.report(1.0);
+  fill_holes(*weights, options.wrap, channels, run.part(0.95, 1.0), &image);
+  run.report(1.0);
   return image;
 }
 
@@ -232,23 +232,22 @@ PaintedTexture paint_texture(const Surface& surface, std::span<const Vector3> po
                              std::span<const float> values, int channels,
                              const PaintOptions& options) {
   check(points.size(), values.size(), channels, options);
-  const Progress& progress = options.progress;
+  const Run& run = options.run;
   const std::vector<std::size_t> chosen =
       usable_indices(points, values, static_cast<std::size_t>(channels));
   const std::vector<Sample> samples =
-      find_samples(surface, points, chosen, options, progress.part(0.0, 0.4));
+      find_samples(surface, points, chosen, options, run.part(0.0, 0.4));
   if (samples.empty()) {
     throw_invalid("points: none has a finite place and values and is within reach of the surface");
   }
-  const std::vector<unsigned char> is_read =
-      looked_up_texels({&surface}, options.width, options.height, options.wrap,
-                       progress.part(0.4, 0.45), options.threads);
+  const std::vector<unsigned char> is_read = looked_up_texels(
+      {&surface}, options.width, options.height, options.wrap, run.part(0.4, 0.45));
   System system(options.width, options.height, options.wrap);
   add_samples(samples, values, channels, &system);
   add_smoothness(is_read, options, &system);
   std::vector<float> weights;
   Image image = splat(samples, values, channels, options, &weights);
-  fill_holes(weights, options.wrap, channels, progress.part(0.45, 0.5), options.threads, &image);
+  fill_holes(weights, options.wrap, channels, run.part(0.45, 0.5), &image);
   system.make_texels();
   for (int y = 0; y < options.height; ++y) {
     for (int x = 0; x < options.width; ++x) {
@@ -259,7 +258,6 @@ PaintedTexture paint_texture(const Surface& surface, std::span<const Vector3> po
   }
   SolveOptions solving;
   solving.ranges = ranges_of(samples, values, channels);
-  solving.threads = options.threads;
   return {solved(options, solving, channels, &weights, &system), samples.size()};
 }
 

@@ -57,19 +57,20 @@ struct RandomRank {
 
 // Dart throwing: each position in turn is kept, and removes all positions that are too near.
 std::vector<std::int64_t> poisson_points(const NeighborSearch& search, double spacing,
-                                         const Progress& progress, int threads) {
+                                         const Run& run) {
   const std::span<const Vector3> positions = search.positions();
   std::vector<RandomRank> ranks(positions.size());
   for (std::uint32_t place = 0; place < ranks.size(); ++place) {
     ranks[place] = {scramble(place), place};
   }
-  sort_in_parallel(&ranks, progress.part(0.0, 0.1), threads);
+  const Stages stages(run, {1, 9});
+  sort_in_parallel(&ranks, stages[0]);
   const std::vector<std::int64_t> first = first_points(search);
   std::vector<bool> is_out(positions.size());
   std::vector<std::int64_t> kept;
   const double square = spacing * spacing;
   constexpr std::size_t kPerReport = 1 << 10;
-  const Progress rest = progress.part(0.1, 1.0);
+  const Run rest = stages[1];
   for (std::size_t t = 0; t < ranks.size(); ++t) {
     if (t % kPerReport == 0) {
       rest.report(static_cast<double>(t) / static_cast<double>(ranks.size()));
@@ -111,7 +112,7 @@ std::int64_t central_point(std::span<const Vector3> points, std::span<const Cell
 }
 
 std::vector<std::int64_t> grid_points(std::span<const Vector3> points, const NeighborSearch& search,
-                                      double spacing, const Progress& progress, int threads) {
+                                      double spacing, const Run& run) {
   const Vector3 low = search.box().low;
   std::vector<CellPoint> cells;
   cells.reserve(points.size());
@@ -128,11 +129,11 @@ std::vector<std::int64_t> grid_points(std::span<const Vector3> points, const Nei
       }
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(cells.size()), kCellsPerTask, threads,
-                  progress.part(0.0, 0.1), place);
-  sort_in_parallel(&cells, progress.part(0.1, 0.9), threads);
+  const Stages stages(run, {1, 8, 1});
+  parallel_ranges(static_cast<std::int64_t>(cells.size()), kCellsPerTask, stages[0], place);
+  sort_in_parallel(&cells, stages[1]);
   std::vector<std::int64_t> kept;
-  const Progress last = progress.part(0.9, 1.0);
+  const Run last = stages[2];
   CancelCheck cancel_check(last);
   for (std::size_t begin = 0, end = 0; begin < cells.size(); begin = end) {
     while (end < cells.size() && cells[end].cell == cells[begin].cell) {
@@ -147,15 +148,16 @@ std::vector<std::int64_t> grid_points(std::span<const Vector3> points, const Nei
 }  // namespace
 
 std::vector<std::int64_t> subsample(std::span<const Vector3> points, double spacing,
-                                    Subsampling method, const Progress& progress, int threads) {
-  const NeighborSearch search(points, progress.part(0.0, 0.3), threads);
+                                    Subsampling method, const Run& run) {
+  const Stages stages(run, {3, 7});
+  const NeighborSearch search(points, stages[0]);
   check_spacing(spacing, search.positions().empty() ? Box{} : search.box());
-  const Progress rest = progress.part(0.3, 1.0);
+  const Run rest = stages[1];
   std::vector<std::int64_t> kept = method == Subsampling::kPoisson
-                                       ? poisson_points(search, spacing, rest, threads)
-                                       : grid_points(points, search, spacing, rest, threads);
+                                       ? poisson_points(search, spacing, rest)
+                                       : grid_points(points, search, spacing, rest);
   std::sort(kept.begin(), kept.end());
-  progress.report(1.0);
+  run.report(1.0);
   return kept;
 }
 

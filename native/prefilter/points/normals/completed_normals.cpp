@@ -38,13 +38,13 @@ Vector3 oriented_normal(const NeighborSearch& search, std::uint32_t place, std::
 
 std::vector<Vector3> completed_normals(std::span<const Vector3> points,
                                        std::span<const Vector3> normals, int neighbours,
-                                       const Progress& progress, int threads) {
+                                       const Run& run) {
   if (points.empty()) throw_invalid("points: none; at least one is needed");
   if (normals.size() != points.size()) {
     throw_invalid("normals: found " + std::to_string(normals.size()) + " for " +
                   std::to_string(points.size()) + " points; one for each is needed");
   }
-  const NeighborSearch search(points, progress.part(0.0, 0.3), threads);
+  const NeighborSearch search(points, run.part(0.0, 0.3));
   std::vector<Vector3> known(search.positions().size());
   for (std::size_t i = points.size(); i-- > 0;) {
     const std::uint32_t place = search.places()[i];
@@ -62,8 +62,8 @@ std::vector<Vector3> completed_normals(std::span<const Vector3> points,
   while (!missing.empty()) {
     std::vector<Vector3> estimates(missing.size());
     const double end = done + 0.7 * (1.0 - done) * static_cast<double>(missing.size()) / whole;
-    parallel_ranges(static_cast<std::int64_t>(missing.size()), kMissingPerTask, threads,
-                    progress.part(done, end), [&](std::int64_t first, std::int64_t last) {
+    parallel_ranges(static_cast<std::int64_t>(missing.size()), kMissingPerTask, run.part(done, end),
+                    [&](std::int64_t first, std::int64_t last) {
                       Neighbors near;
                       for (auto i = static_cast<std::size_t>(first);
                            i < static_cast<std::size_t>(last); ++i) {

@@ -23,14 +23,14 @@ constexpr std::size_t kDirectionLinks = 8;  // the default of estimate_normals
 }  // namespace
 
 std::vector<Vector3> directed_normals(std::span<const Vector3> points,
-                                      std::span<const Vector3> normals, const Progress& progress,
-                                      int threads) {
+                                      std::span<const Vector3> normals, const Run& run) {
   if (points.empty()) throw_invalid("points: none; at least one is needed");
   if (normals.size() != points.size()) {
     throw_invalid("normals: found " + std::to_string(normals.size()) + " for " +
                   std::to_string(points.size()) + " points; one for each is needed");
   }
-  const NeighborSearch search(points, progress.part(0.0, 0.3), threads);
+  const Stages stages(run, {3, 3, 4});
+  const NeighborSearch search(points, stages[0]);
   const std::span<const Vector3> positions = search.positions();
   std::vector<Vector3> result(points.size());
   if (positions.empty()) return result;
@@ -57,11 +57,10 @@ std::vector<Vector3> directed_normals(std::span<const Vector3> points,
       }
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(positions.size()), kPointsPerTask, threads,
-                  progress.part(0.3, 0.6), link);
+  parallel_ranges(static_cast<std::int64_t>(positions.size()), kPointsPerTask, stages[1], link);
   std::vector<Vector3> directed = at_places;
-  orient_normals({positions, areas, kDirectionLinks, links}, NormalSide::kOutward,
-                 progress.part(0.6, 1.0), threads, &directed);
+  orient_normals({positions, areas, kDirectionLinks, links}, NormalSide::kOutward, stages[2],
+                 &directed);
   for (std::size_t i = 0; i < result.size(); ++i) {
     const std::uint32_t place = search.places()[i];
     if (place == NeighborSearch::kNowhere) continue;

@@ -60,9 +60,9 @@ class ScanGrid {
   }
 
   // Median distance of neighbors in rows and columns; 0 if there are none.
-  double spacing(const Progress& progress) const {
+  double spacing(const Run& run) const {
     std::vector<double> lengths;
-    CancelCheck cancel_check(progress);
+    CancelCheck cancel_check(run);
     for (std::int64_t row = 0; row < rows(); ++row) {
       for (std::int64_t column = 0; column < columns(); ++column) {
         cancel_check.step();
@@ -120,12 +120,12 @@ class ScanGrid {
 // Distance of each grid position from the end of the surface, in steps up to kBorderSteps: two
 // passes of a chamfer distance transform.
 std::vector<std::int8_t> steps_to_end(std::int64_t rows, std::int64_t columns,
-                                      const std::vector<bool>& is_end, const Progress& progress) {
+                                      const std::vector<bool>& is_end, const Run& run) {
   std::vector<std::int8_t> steps(is_end.size());
   for (std::size_t i = 0; i < steps.size(); ++i) {
     steps[i] = is_end[i] ? 0 : static_cast<std::int8_t>(kBorderSteps);
   }
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   const auto update = [&](std::int64_t row, std::int64_t column, std::int64_t along) {
     cancel_check.step();
     std::int8_t& own = steps[static_cast<std::size_t>(row * columns + column)];
@@ -151,10 +151,10 @@ std::vector<std::int8_t> steps_to_end(std::int64_t rows, std::int64_t columns,
 
 }  // namespace
 
-std::vector<Vector3> mesh_normals(const InputMesh& mesh, const Progress& progress) {
+std::vector<Vector3> mesh_normals(const InputMesh& mesh, const Run& run) {
   std::vector<Vector3> normals(mesh.positions.size());
   const auto count = static_cast<std::int64_t>(mesh.positions.size());
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     cancel_check.step();
     for (const std::int64_t vertex : mesh.triangles[t]) {
@@ -176,15 +176,15 @@ std::vector<Vector3> mesh_normals(const InputMesh& mesh, const Progress& progres
 }
 
 GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
-                         const std::optional<Vector3>& viewpoint, const Progress& progress) {
+                         const std::optional<Vector3>& viewpoint, const Run& run) {
   if (viewpoint) check_points(std::span(&*viewpoint, 1), "viewpoint: row", kLargestCoordinate);
   const ScanGrid places(points, grid);
-  const double longest = kMaxEdgeRatio * places.spacing(progress);
+  const double longest = kMaxEdgeRatio * places.spacing(run);
   std::vector<Triangle> triangles;
   // A position is at the end of the surface unless all four cells around it are complete.
   std::vector<bool> is_end(grid.points.size(), true);
   std::vector<std::uint8_t> whole_cells(grid.points.size());
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   for (std::int64_t row = 0; row + 1 < places.rows(); ++row) {
     for (std::int64_t column = 0; column + 1 < places.columns(); ++column) {
       cancel_check.step();
@@ -200,7 +200,7 @@ GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
     }
   }
   GridNormals result;
-  result.normals = mesh_normals({points, triangles}, progress);
+  result.normals = mesh_normals({points, triangles}, run);
   const auto toward = [&](std::size_t i) {
     return viewpoint ? unit_or_none(*viewpoint - points[i]) : Vector3{0.0, 0.0, 1.0};
   };
@@ -212,8 +212,7 @@ GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
   if (visible < 0.0) {
     for (Vector3& normal : result.normals) normal = Vector3{} - normal;
   }
-  const std::vector<std::int8_t> steps =
-      steps_to_end(places.rows(), places.columns(), is_end, progress);
+  const std::vector<std::int8_t> steps = steps_to_end(places.rows(), places.columns(), is_end, run);
   result.weights.resize(points.size());
   for (std::size_t place = 0; place < grid.points.size(); ++place) {
     cancel_check.step();
@@ -223,7 +222,7 @@ GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
     const double cosine = std::clamp(dot(result.normals[i], toward(i)), 0.0, 1.0);
     result.weights[i] = static_cast<float>(cosine * (steps[place] + 1) / (kBorderSteps + 1));
   }
-  progress.report(1.0);
+  run.report(1.0);
   return result;
 }
 

@@ -161,14 +161,14 @@ CellCounts classify_cells(std::span<const Vector3> points, const Range& x, const
 
 }  // namespace
 
-bool is_height_field(std::span<const Vector3> all, const Progress& progress) {
+bool is_height_field(std::span<const Vector3> all, const Run& run) {
   const std::vector<Vector3> points = sample_positions(all, kMaxHeightPoints);
   if (points.size() < kMinHeightPoints) return false;
   const Range x = range_along(points, 0);
   const Range y = range_along(points, 1);
   const auto count = static_cast<double>(points.size());
   double side = std::sqrt(x.size / count) * std::sqrt(kPointsPerCell * y.size);
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   for (int scale = 0; scale < kScales; ++scale, side *= 2.0) {
     if (!(side > 0.0 && kMinCellsPerSide * side <= std::min(x.size, y.size))) return false;
     const CellCounts counts = classify_cells(points, x, y, side, &cancel_check);

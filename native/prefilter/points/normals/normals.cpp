@@ -53,7 +53,7 @@ struct LocalPlanes {
 };
 
 LocalPlanes fit_planes(const NeighborSearch& search, std::size_t neighbors, std::size_t degree,
-                       const Progress& progress, int threads) {
+                       const Run& run) {
   const std::span<const Vector3> positions = search.positions();
   LocalPlanes planes;
   planes.normals.resize(positions.size());
@@ -82,8 +82,7 @@ LocalPlanes fit_planes(const NeighborSearch& search, std::size_t neighbors, std:
       planes.normals[place] = normal;
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(positions.size()), kPlanesPerTask, threads, progress,
-                  fit);
+  parallel_ranges(static_cast<std::int64_t>(positions.size()), kPlanesPerTask, run, fit);
   return planes;
 }
 
@@ -91,18 +90,19 @@ LocalPlanes fit_planes(const NeighborSearch& search, std::size_t neighbors, std:
 
 std::vector<Vector3> estimate_normals(std::span<const Vector3> points, int neighbours,
                                       std::span<const Vector3> viewpoints, NormalSide side,
-                                      const Progress& progress, int threads) {
+                                      const Run& run) {
   check_arguments(points, neighbours, viewpoints);
   std::vector<Vector3> result(points.size());
-  const NeighborSearch search(points, progress.part(0.0, 0.2), threads);
+  const Stages stages(run, {4, 12, 3, 1});
+  const NeighborSearch search(points, stages[0]);
   const std::span<const Vector3> positions = search.positions();
   if (positions.size() < 3) return result;
   const auto neighbor_count = static_cast<std::size_t>(neighbours);
   const std::size_t degree = viewpoints.empty() ? std::min(neighbor_count - 1, kMaxLinks) : 0;
-  LocalPlanes planes = fit_planes(search, neighbor_count, degree, progress.part(0.2, 0.8), threads);
+  LocalPlanes planes = fit_planes(search, neighbor_count, degree, stages[1]);
   if (viewpoints.empty()) {
-    orient_normals({positions, planes.areas, planes.degree, planes.links}, side,
-                   progress.part(0.8, 0.95), threads, &planes.normals);
+    orient_normals({positions, planes.areas, planes.degree, planes.links}, side, stages[2],
+                   &planes.normals);
   }
   const auto give_back = [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
@@ -114,8 +114,7 @@ std::vector<Vector3> estimate_normals(std::span<const Vector3> points, int neigh
       if (dot(result[i], viewpoint - points[i]) < 0.0) result[i] = reversed(result[i]);
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(points.size()), kRowsPerTask, threads,
-                  progress.part(0.95, 1.0), give_back);
+  parallel_ranges(static_cast<std::int64_t>(points.size()), kRowsPerTask, stages[3], give_back);
   return result;
 }
 

@@ -67,7 +67,7 @@ class SignedSets {
 };
 
 std::vector<std::int16_t> agreements(const LinkedPoints& points, std::span<const Vector3> normals,
-                                     const Progress& progress, int threads) {
+                                     const Run& run) {
   std::vector<std::int16_t> result(points.links.size());
   const auto compare = [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
@@ -80,8 +80,8 @@ std::vector<std::int16_t> agreements(const LinkedPoints& points, std::span<const
       }
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(points.positions.size()), kNormalsPerTask, threads,
-                  progress, compare);
+  parallel_ranges(static_cast<std::int64_t>(points.positions.size()), kNormalsPerTask, run,
+                  compare);
   return result;
 }
 
@@ -94,10 +94,10 @@ struct Patches {
 // Joins neighbors with unambiguous normals. Points in `is_known`, if it is not empty, have final
 // orientations and form one patch.
 Patches grow_patches(const LinkedPoints& points, std::span<const std::int16_t> agreements,
-                     const std::vector<bool>& is_known, const Progress& progress) {
+                     const std::vector<bool>& is_known, const Run& run) {
   const std::size_t count = points.positions.size();
   SignedSets sets(count);
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   const auto known = [&](std::size_t i) { return !is_known.empty() && is_known[i]; };
   std::uint32_t first_known = kNone;
   for (std::size_t i = 0, e = 0; i < count; ++i) {
@@ -173,9 +173,9 @@ class RecentBorders {
 
 std::vector<Border> find_borders(const LinkedPoints& points,
                                  std::span<const std::int16_t> agreements, const Patches& patches,
-                                 const Progress& progress) {
+                                 const Run& run) {
   RecentBorders borders;
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   for (std::size_t i = 0, e = 0; i < points.positions.size(); ++i) {
     cancel_check.step();
     for (std::size_t end = e + points.degree; e < end; ++e) {
@@ -191,8 +191,8 @@ std::vector<Border> find_borders(const LinkedPoints& points,
 }
 
 // Sums the votes for each pair of patches.
-void merge_borders(std::vector<Border>* borders, const Progress& progress, int threads) {
-  sort_in_parallel(borders, progress, threads);
+void merge_borders(std::vector<Border>* borders, const Run& run) {
+  sort_in_parallel(borders, run);
   std::size_t kept = 0;
   for (const Border& border : *borders) {
     if (kept > 0 && (*borders)[kept - 1].a == border.a && (*borders)[kept - 1].b == border.b) {
@@ -206,12 +206,11 @@ void merge_borders(std::vector<Border>* borders, const Progress& progress, int t
 
 // Joins each patch to the one with the most votes, and repeats that with the joined sets (Boruvka's
 // algorithm).
-SignedSets join_patches(std::size_t count, std::vector<Border> borders, const Progress& progress,
-                        int threads) {
+SignedSets join_patches(std::size_t count, std::vector<Border> borders, const Run& run) {
   SignedSets sets(count);
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   while (!borders.empty()) {
-    merge_borders(&borders, progress.part(0.0, 0.0), threads);
+    merge_borders(&borders, run.part(0.0, 0.0));
     std::vector<std::uint32_t> strongest(count, kNone);
     for (std::uint32_t k = 0; k < borders.size(); ++k) {
       cancel_check.step();
@@ -263,7 +262,7 @@ struct Part {
 // Whether the normals of each set point inward on the whole. A convex set shows that by itself; a
 // piece of a larger surface, such as a separate face of a box, by the position of the other pieces.
 std::vector<bool> sets_inside_out(const LinkedPoints& points, std::span<const Vector3> normals,
-                                  const Patches& patches, const Progress& progress) {
+                                  const Patches& patches, const Run& run) {
   // Normalized, so that products neither overflow nor vanish.
   Box box = kEmptyBox;
   for (const Vector3& position : points.positions) box.include(position);
@@ -276,7 +275,7 @@ std::vector<bool> sets_inside_out(const LinkedPoints& points, std::span<const Ve
   };
   std::vector<Part> parts(patches.count);
   Part whole;
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     cancel_check.step();
     const double area = points.areas[i] / largest;
@@ -322,12 +321,12 @@ std::vector<bool> turn_up(std::vector<Vector3>* normals) {
 // Whether the normals of each set point down: decided by its known normals, otherwise by the mean.
 std::vector<bool> sets_upside_down(const LinkedPoints& points, std::span<const Vector3> normals,
                                    const Patches& patches, const std::vector<bool>& is_known,
-                                   const Progress& progress) {
+                                   const Run& run) {
   const double largest = *std::max_element(points.areas.begin(), points.areas.end());
   std::vector<double> sums(patches.count);
   std::vector<bool> has_known(patches.count);
   std::vector<bool> result(patches.count);
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     cancel_check.step();
     const SignedSets::Member& own = patches.members[i];
@@ -351,21 +350,19 @@ double agreement(const Vector3& a, const Vector3& b, const Vector3& offset) {
   return square > 0.0 ? dot(a, b) - dot(a, offset) * dot(b, offset) / square : 0.0;
 }
 
-void orient_normals(const LinkedPoints& points, NormalSide side, const Progress& progress,
-                    int threads, std::vector<Vector3>* normals) {
+void orient_normals(const LinkedPoints& points, NormalSide side, const Run& run,
+                    std::vector<Vector3>* normals) {
   std::vector<bool> is_known;
   if (side == NormalSide::kUp) is_known = turn_up(normals);
-  const std::vector<std::int16_t> near =
-      agreements(points, *normals, progress.part(0.0, 0.3), threads);
-  Patches patches = grow_patches(points, near, is_known, progress.part(0.3, 0.6));
-  std::vector<Border> borders = find_borders(points, near, patches, progress.part(0.6, 0.7));
-  SignedSets sets =
-      join_patches(patches.count, std::move(borders), progress.part(0.7, 0.9), threads);
+  const std::vector<std::int16_t> near = agreements(points, *normals, run.part(0.0, 0.3));
+  Patches patches = grow_patches(points, near, is_known, run.part(0.3, 0.6));
+  std::vector<Border> borders = find_borders(points, near, patches, run.part(0.6, 0.7));
+  SignedSets sets = join_patches(patches.count, std::move(borders), run.part(0.7, 0.9));
   for (SignedSets::Member& own : patches.members) {
     const SignedSets::Member patch = sets.find(own.set);
     own = {patch.set, own.is_reversed ^ patch.is_reversed};
   }
-  const Progress last = progress.part(0.9, 1.0);
+  const Run last = run.part(0.9, 1.0);
   const std::vector<bool> is_wrong =
       side == NormalSide::kUp ? sets_upside_down(points, *normals, patches, is_known, last)
                               : sets_inside_out(points, *normals, patches, last);
@@ -376,8 +373,8 @@ void orient_normals(const LinkedPoints& points, NormalSide side, const Progress&
       if ((own.is_reversed != 0) != is_wrong[own.set]) normal = Vector3{} - normal;
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(normals->size()), kNormalsPerTask, threads,
-                  progress.part(1.0, 1.0), reverse);
+  parallel_ranges(static_cast<std::int64_t>(normals->size()), kNormalsPerTask, run.part(1.0, 1.0),
+                  reverse);
 }
 
 }  // namespace prefilter

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/normals.h"
 
 namespace prefilter {
@@ -31,7 +31,7 @@ struct LinkedPoints {
 /// Reverses normals, of length 1 or zero, so that neighbors agree. For kOutward, each connected
 /// part points outward on the whole; for kUp, all normals that are not almost horizontal point up,
 /// and the others agree with their neighbors. Throws Error(kCancelled).
-void orient_normals(const LinkedPoints& points, NormalSide side, const Progress& progress,
-                    int threads, std::vector<Vector3>* normals);
+void orient_normals(const LinkedPoints& points, NormalSide side, const Run& run,
+                    std::vector<Vector3>* normals);
 
 }  // namespace prefilter

@@ -115,12 +115,12 @@ class CubeView {
   }
 
   // Whether almost all rays meet the surface once.
-  bool is_once(const Progress& progress) const {
+  bool is_once(const Run& run) const {
     std::size_t all = 0;
     std::size_t once = 0;
     for (std::size_t f = 0; f < kFaces; ++f) {
       const auto part = static_cast<double>(f) / static_cast<double>(kFaces);
-      const Progress own = progress.part(part, part + 1.0 / static_cast<double>(kFaces));
+      const Run own = run.part(part, part + 1.0 / static_cast<double>(kFaces));
       all += faces_[f].size();
       if (faces_[f].size() < kMinViewPoints) continue;
       once += is_height_field(faces_[f], own) ? faces_[f].size() : 0;
@@ -143,7 +143,7 @@ std::size_t distinct_values(std::span<const Vector3> points, std::size_t axis) {
 
 // Whether heights over x and y are a map, rather than the view of a camera that looks along z: x
 // and y form a grid, or the camera's axis would miss the points.
-bool is_map(std::span<const Vector3> points, const Progress& progress) {
+bool is_map(std::span<const Vector3> points, const Run& run) {
   Box view = kEmptyBox;
   for (const Vector3& p : points) {
     if (!(std::abs(p[2]) > 0.0)) return false;
@@ -157,7 +157,7 @@ bool is_map(std::span<const Vector3> points, const Progress& progress) {
   for (int a = 0; a < 2; ++a) {
     is_beside |= std::abs(view.low[a] + view.high[a]) > 2.0 * kMaxAxisOffset * view.size(a);
   }
-  return (is_grid || is_beside) && is_height_field(points, progress);
+  return (is_grid || is_beside) && is_height_field(points, run);
 }
 
 // Robust standard deviation of values, from the first and last decile.
@@ -174,39 +174,40 @@ struct Spreads {
   double surface = 0.0;
 };
 
-Spreads find_spreads(std::span<const Vector3> points, const Progress& progress, int threads) {
-  const NeighborSearch search(points, progress.part(0.0, 0.6), threads);
+Spreads find_spreads(std::span<const Vector3> points, const Run& run) {
+  const Stages stages(run, {3, 2});
+  const NeighborSearch search(points, stages[0]);
   const std::span<const Vector3> positions = search.positions();
   const std::size_t count = std::min(kMaxSpreadSamples, positions.size());
   std::vector<double> areas(count);
   std::vector<double> angles(count);
-  parallel_for(static_cast<std::int64_t>(count), threads, progress.part(0.6, 1.0),
-               [&](std::int64_t i) {
-                 const auto k = static_cast<std::size_t>(i);
-                 const auto place = static_cast<std::uint32_t>(k * positions.size() / count);
-                 Neighbors near;
-                 search.find(place, kSpreadNeighbors + 1, &near);
-                 const Vector3& p = positions[place];
-                 const double squared = dot(p, p);
-                 const Vector3 normal = least_eigenvector(covariance(positions, place, near));
-                 const double cosine = std::abs(dot(normal, p)) / std::sqrt(squared);
-                 const double area = std::max(near.squares().back(), 1e-200);
-                 areas[k] = elementary::log(area);
-                 angles[k] = elementary::log(area / squared * std::max(cosine, kMinCosine));
-               });
+  parallel_for(static_cast<std::int64_t>(count), stages[1], [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto place = static_cast<std::uint32_t>(k * positions.size() / count);
+    Neighbors near;
+    search.find(place, kSpreadNeighbors + 1, &near);
+    const Vector3& p = positions[place];
+    const double squared = dot(p, p);
+    const Vector3 normal = least_eigenvector(covariance(positions, place, near));
+    const double cosine = std::abs(dot(normal, p)) / std::sqrt(squared);
+    const double area = std::max(near.squares().back(), 1e-200);
+    areas[k] = elementary::log(area);
+    angles[k] = elementary::log(area / squared * std::max(cosine, kMinCosine));
+  });
   return {spread(&angles), spread(&areas)};
 }
 
 }  // namespace
 
-OriginRole origin_role(std::span<const Vector3> all, const Progress& progress, int threads) {
+OriginRole origin_role(std::span<const Vector3> all, const Run& run) {
   const std::vector<Vector3> points = scaled_points(all);
   if (points.size() < kMinViewPoints) return OriginRole::kNone;
   const CubeView view(points);
-  if (view.is_narrow(points) || !view.is_once(progress.part(0.0, 0.5))) return OriginRole::kNone;
+  const Stages stages(run, {5, 2, 3});
+  if (view.is_narrow(points) || !view.is_once(stages[0])) return OriginRole::kNone;
   const bool is_view = view.share() < kMaxViewShare;
-  if (is_view && is_map(points, progress.part(0.5, 0.7))) return OriginRole::kNone;
-  const Spreads spreads = find_spreads(points, progress.part(0.7, 1.0), threads);
+  if (is_view && is_map(points, stages[1])) return OriginRole::kNone;
+  const Spreads spreads = find_spreads(points, stages[2]);
   const double ratio = spreads.directions / spreads.surface;
   if (is_view) {
     const bool is_even = spreads.directions < kMaxEvenSpread || ratio < 1.0;

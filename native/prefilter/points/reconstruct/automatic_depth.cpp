@@ -106,8 +106,7 @@ void ThinnedPoints::thin() {
   }
 }
 
-int automatic_depth(const ThinnedPoints& points, const Box& box, const Progress& progress,
-                    int threads) {
+int automatic_depth(const ThinnedPoints& points, const Box& box, const Run& run) {
   const double longest = std::max({box.size(0), box.size(1), box.size(2)});
   std::vector<Vector3> positions;
   positions.reserve(points.entries().size());
@@ -117,16 +116,16 @@ int automatic_depth(const ThinnedPoints& points, const Box& box, const Progress&
     for (std::size_t a = 0; a < 3; ++a) scaled[a] = (entry.position[a] - box.low[a]) / longest;
     positions.push_back(scaled);
   }
-  const NeighborSearch search(positions, progress.part(0.0, 0.5), threads);
+  const Stages stages(run, {1, 1});
+  const NeighborSearch search(positions, stages[0]);
   const std::size_t queried = std::min(kMaxDensityQueries, positions.size());
   std::vector<Patch> patches(queried);
-  parallel_for(static_cast<std::int64_t>(queried), threads, progress.part(0.5, 1.0),
-               [&](std::int64_t i) {
-                 Neighbors neighbors;
-                 const auto k = static_cast<std::size_t>(i);
-                 search.find(search.places()[k], kDensityNeighbors + 1, &neighbors);
-                 patches[k] = patch_of(neighbors);
-               });
+  parallel_for(static_cast<std::int64_t>(queried), stages[1], [&](std::int64_t i) {
+    Neighbors neighbors;
+    const auto k = static_cast<std::size_t>(i);
+    search.find(search.places()[k], kDensityNeighbors + 1, &neighbors);
+    patches[k] = patch_of(neighbors);
+  });
   const double density = points.share() * median_density(&patches);
   int depth = 1;
   while (depth < kMaxTreeDepth) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -49,7 +49,6 @@ class ThinnedPoints {
 /// point or more per face of a finest cell. Density is estimated from the distance to the last of
 /// several neighbors. Each point is weighted by the area that it represents, so dense parts of the
 /// scan do not dominate.
-int automatic_depth(const ThinnedPoints& points, const Box& box, const Progress& progress,
-                    int threads);
+int automatic_depth(const ThinnedPoints& points, const Box& box, const Run& run);
 
 }  // namespace prefilter

@@ -36,7 +36,7 @@ constexpr double kSizeRounding = 1e-6;
 int depth_for(const Box& box, const ThinnedPoints& thinned, const ReconstructOptions& options) {
   if (!options.cell_size) {
     if (options.depth) return *options.depth;
-    return automatic_depth(thinned, box, options.progress.part(0.1, 0.12), options.threads);
+    return automatic_depth(thinned, box, options.run.part(0.1, 0.12));
   }
   const auto cell_at = [&](int depth) {
     return cube_around(box, depth).size(0) / std::ldexp(1.0, depth);

@@ -72,7 +72,7 @@ void add_coarse_leaves(const SplitCells& splits, SampleSlab* whole, PooledFlux* 
 
 }  // namespace
 
-double build_coarse_tree(const Progress& progress, int threads, Slabs* slabs) {
+double build_coarse_tree(const Run& run, Slabs* slabs) {
   PooledFlux flux(static_cast<std::size_t>(slabs->top()) + 1);
   double left_out = 0.0;
   std::vector<std::uint8_t> is_split;
@@ -84,7 +84,7 @@ double build_coarse_tree(const Progress& progress, int threads, Slabs* slabs) {
     left_out += slabs->left_out(s);
   };
   for_slabs(
-      {SlabStage::kCoefficients}, progress, threads, slabs, [](int) {}, collect);
+      {SlabStage::kCoefficients}, run, slabs, [](int) {}, collect);
   slabs->whole.at(slabs->top()).is_split = std::move(is_split);
   const SplitCells splits = coarse_splits(slabs->whole, flux.back());
   add_coarse_leaves(splits, &slabs->whole, &flux);

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/reconstruct/assemble.h"
 #include "prefilter/points/reconstruct/slabs.h"
 
@@ -18,7 +18,7 @@ CoarseTree make_coarse_tree(PooledFlux flux, int top, int slab_count);
 
 /// Sets the members that Slabs needs for kValues; returns the total weight of the outliers. Throws
 /// Error(kCancelled).
-double build_coarse_tree(const Progress& progress, int threads, Slabs* slabs);
+double build_coarse_tree(const Run& run, Slabs* slabs);
 
 /// Solves for the values of the coarse tree; `target` is the value wanted at samples.
 void solve_coarse_tree(float target, CoarseTree* coarse);

@@ -49,7 +49,7 @@ class SampleAdder {
     std::vector<double> volumes(count);
     // A slab's samples also change the slab below, so even and odd slabs take turns.
     for (std::size_t parity = 0; parity < 2; ++parity) {
-      parallel_for(static_cast<std::int64_t>((count + 1 - parity) / 2), threads, Progress(),
+      parallel_for(static_cast<std::int64_t>((count + 1 - parity) / 2), Run(threads),
                    [&](std::int64_t i) {
                      const std::size_t s = 2 * static_cast<std::size_t>(i) + parity;
                      volumes[s] = add_slab(batch, order, begins[s], begins[s + 1], s, &coarse[s]);
@@ -154,8 +154,7 @@ struct SampleSums {
 };
 
 SampleSums add_samples(PointSource* source, const SampleGrid& grid, const Slabs& slabs,
-                       const std::vector<SlabLeaves>& leaves, const Progress& progress,
-                       int threads) {
+                       const std::vector<SlabLeaves>& leaves, const Run& run) {
   SampleSums sums;
   // Shards are as high as slabs, so each is written by two slabs at most.
   constexpr int kBrickBits = 2;
@@ -167,9 +166,9 @@ SampleSums add_samples(PointSource* source, const SampleGrid& grid, const Slabs&
   std::size_t done = 0;
   source->rewind();
   while (source->read(PointOrder::kMaxPoints, &batch)) {
-    adder.add(batch, threads);
+    adder.add(batch, run.threads());
     done += batch.positions.size();
-    if (count > 0.0) progress.report(std::min(1.0, static_cast<double>(done) / count));
+    if (count > 0.0) run.report(std::min(1.0, static_cast<double>(done) / count));
   }
   sums.volume = adder.volume();
   return sums;
@@ -190,18 +189,19 @@ void for_levels(D4Function* function, int top, const Visit& visit) {
 }  // namespace
 
 D4Function make_d4_function(PointSource* source, const SampleGrid& grid, const Slabs& slabs,
-                            const Progress& progress, int threads) {
+                            const Run& run) {
   const auto count = static_cast<std::size_t>(slabs.count());
   std::vector<SlabLeaves> leaves(count);
-  parallel_for(slabs.count(), threads, Progress(), [&](std::int64_t s) {
+  parallel_for(slabs.count(), Run(run.threads()), [&](std::int64_t s) {
     leaves[static_cast<std::size_t>(s)] = find_slab_leaves(slabs, static_cast<int>(s));
   });
-  SampleSums sums = add_samples(source, grid, slabs, leaves, progress.part(0.0, 0.5), threads);
+  const Stages stages(run, {10, 1, 7, 2});
+  SampleSums sums = add_samples(source, grid, slabs, leaves, stages[0]);
   D4Function result;
   result.is_flipped = sums.volume < 0.0;
   for (const SlabLeaves& each : leaves) result.left_out += each.left_out;
   result.trees.resize(count);
-  parallel_for(slabs.count(), threads, progress.part(0.5, 0.55), [&](std::int64_t s) {
+  parallel_for(slabs.count(), stages[1], [&](std::int64_t s) {
     result.trees[static_cast<std::size_t>(s)] = split_slab(slabs, leaves, static_cast<int>(s));
   });
   result.coarse = split_whole(slabs, find_whole_flags(slabs, leaves), result.trees);
@@ -212,13 +212,12 @@ D4Function make_d4_function(PointSource* source, const SampleGrid& grid, const S
     add_needed(*level, &needed[k + 1]);
     levels.emplace_back(level, k + 1);
   });
-  const std::vector<d4::Means> means = d4::transform(std::move(sums.differences), std::move(needed),
-                                                     progress.part(0.55, 0.9), threads);
-  parallel_for(static_cast<std::int64_t>(levels.size()), threads, progress.part(0.9, 1.0),
-               [&](std::int64_t i) {
-                 const auto& [level, k] = levels[static_cast<std::size_t>(i)];
-                 fill_values(means[k], level);
-               });
+  const std::vector<d4::Means> means =
+      d4::transform(std::move(sums.differences), std::move(needed), stages[2]);
+  parallel_for(static_cast<std::int64_t>(levels.size()), stages[3], [&](std::int64_t i) {
+    const auto& [level, k] = levels[static_cast<std::size_t>(i)];
+    fill_values(means[k], level);
+  });
   return result;
 }
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/point_source.h"
 #include "prefilter/points/reconstruct/assemble.h"
 #include "prefilter/points/reconstruct/flux_tree.h"
@@ -26,6 +26,6 @@ struct D4Function {
 /// cell is split where it or a neighbor contains sample leaves smaller than itself. Values are
 /// those at cell centers.
 D4Function make_d4_function(PointSource* source, const SampleGrid& grid, const Slabs& slabs,
-                            const Progress& progress, int threads);
+                            const Run& run);
 
 }  // namespace prefilter

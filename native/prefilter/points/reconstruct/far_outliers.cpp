@@ -85,11 +85,10 @@ class DistanceBins {
 // Extent of the points in each bin.
 using Counts = std::vector<CloudPart>;
 
-Counts count_points(PointSource* source, const DistanceBins& bins, const Progress& progress,
-                    int threads) {
+Counts count_points(PointSource* source, const DistanceBins& bins, const Run& run) {
   Counts counts(DistanceBins::count());
   for_batches<Counts>(
-      source, progress, threads,
+      source, run,
       [&](const PointBatch& batch, Counts* part) {
         part->assign(DistanceBins::count(), {});
         for (std::size_t i = 0; i < batch.positions.size(); ++i) {
@@ -124,12 +123,11 @@ bool may_have_far_outliers(const CloudExtent& extent) {
   return may_have_far_outliers(extent, max_far_outliers(extent.part.points));
 }
 
-void exclude_far_outliers(PointSource* source, const Progress& progress, int threads,
-                          CloudExtent* extent) {
+void exclude_far_outliers(PointSource* source, const Run& run, CloudExtent* extent) {
   const std::size_t most = max_far_outliers(extent->part.points);
   for (int round = 0; round < kMaxOutlierRounds && may_have_far_outliers(*extent, most); ++round) {
     const DistanceBins bins(*extent);
-    const Counts counts = count_points(source, bins, progress, threads);
+    const Counts counts = count_points(source, bins, run);
     const std::optional<std::size_t> first = first_outlier_bin(counts, most - extent->strays);
     if (!first) return;
     CloudPart near;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/point_source.h"
 #include "prefilter/points/reconstruct/gather_samples.h"
 
@@ -16,8 +16,7 @@ namespace prefilter {
 /// Removes far outliers from a cloud's extent: up to one in 100 000 points (or one in 1000, but at
 /// most 3) whose distance from the mean is about twice that of all others or more. Reads the source
 /// again only if there may be any, once per iteration.
-void exclude_far_outliers(PointSource* source, const Progress& progress, int threads,
-                          CloudExtent* extent);
+void exclude_far_outliers(PointSource* source, const Run& run, CloudExtent* extent);
 
 /// Whether there may be far outliers, which only another pass over all points can confirm.
 bool may_have_far_outliers(const CloudExtent& extent);

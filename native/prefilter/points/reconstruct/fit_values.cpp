@@ -56,7 +56,7 @@ class ValueFit {
 
   // `rounds_left` is the number of rounds after this one.
   void find_changes(float isovalue, int rounds_left) {
-    const ContourTree contour(*tree_, isovalue, Progress(), 1);
+    const ContourTree contour(*tree_, isovalue, Run(1));
     reach_ = kRoundMargin * rounds_left;
     const int margin = (reach_ + 1) * range_.largest;
     const SurfaceVertices vertices(contour, RootFrame({{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}}),

@@ -207,8 +207,8 @@ void measure_point(const PointBatch& batch, std::size_t i, const ThinnedPoints* 
 
 }  // namespace
 
-CloudExtent measure_cloud(PointSource* source, const Progress& progress, int threads,
-                          ThinnedPoints* thinned, RepeatedPositions* repeated) {
+CloudExtent measure_cloud(PointSource* source, const Run& run, ThinnedPoints* thinned,
+                          RepeatedPositions* repeated) {
   CloudExtent extent;
   CloudExtent own;  // of the cloud that is read
   std::size_t cloud = 0;
@@ -217,7 +217,7 @@ CloudExtent measure_cloud(PointSource* source, const Progress& progress, int thr
     extent.huge.include(std::exchange(own.huge, CloudPart()));
   };
   for_batches<MeasuredBatch>(
-      source, progress, threads,
+      source, run,
       [&](const PointBatch& batch, MeasuredBatch* measured) {
         *measured = MeasuredBatch();
         measured->cloud = batch.cloud;
@@ -243,12 +243,12 @@ CloudExtent measure_cloud(PointSource* source, const Progress& progress, int thr
   return extent;
 }
 
-void gather_samples(PointSource* source, const SampleGrid& grid, const Progress& progress,
-                    int threads, SampleStore* store, NormalProbe* probe) {
+void gather_samples(PointSource* source, const SampleGrid& grid, const Run& run, SampleStore* store,
+                    NormalProbe* probe) {
   const std::size_t attribute_count = source->attributes().size();
   std::size_t cloud = 0;
   for_batches<Scratch>(
-      source, progress, threads,
+      source, run,
       [&](const PointBatch& batch, Scratch* scratch) {
         make_run(batch, grid, attribute_count, scratch);
         scratch->cloud = batch.cloud;
@@ -260,7 +260,7 @@ void gather_samples(PointSource* source, const SampleGrid& grid, const Progress&
         store->add(scratch.run);
         if (probe != nullptr) probe->add(scratch.near);
       });
-  store->finish(threads);
+  store->finish(run.threads());
 }
 
 }  // namespace prefilter

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/float_steps.h"
 #include "prefilter/points/point_source.h"
 #include "prefilter/points/reconstruct.h"
@@ -50,15 +50,15 @@ struct CloudExtent {
 /// Reads the source once. If not null, `thinned` receives a subset of the valid points, and
 /// `repeated` the positions that may hold many points. settle_huge() has not been called on the
 /// result.
-CloudExtent measure_cloud(PointSource* source, const Progress& progress, int threads,
-                          ThinnedPoints* thinned = nullptr, RepeatedPositions* repeated = nullptr);
+CloudExtent measure_cloud(PointSource* source, const Run& run, ThinnedPoints* thinned = nullptr,
+                          RepeatedPositions* repeated = nullptr);
 
 /// Reads the source again and accumulates all valid points into cells. The result does not depend
 /// on the number of threads; with another order of the points it differs by rounding only. Joined
 /// clouds are summed separately and then added in order, so that separate machines can do the
 /// former. If not null, `probe` examines all points in the same pass.
-void gather_samples(PointSource* source, const SampleGrid& grid, const Progress& progress,
-                    int threads, SampleStore* store, NormalProbe* probe = nullptr);
+void gather_samples(PointSource* source, const SampleGrid& grid, const Run& run, SampleStore* store,
+                    NormalProbe* probe = nullptr);
 
 /// Sorts the valid points of a batch by cell: entries hold the cell key and, in the lowest
 /// kBatchBits bits, the point's index.

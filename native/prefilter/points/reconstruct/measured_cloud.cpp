@@ -17,19 +17,19 @@ constexpr std::size_t kPointsPerMissing = 1000;
 
 }  // namespace
 
-MeasuredCloud::MeasuredCloud(PointSource* source, bool collects_thinned, const Progress& progress,
-                             int threads)
+MeasuredCloud::MeasuredCloud(PointSource* source, bool collects_thinned, const Run& run)
     : points_(source) {
   RepeatedPositions repeated;
-  const auto measure = [&](const Progress& part, RepeatedPositions* all) {
+  const auto measure = [&](const Run& part, RepeatedPositions* all) {
     thinned_ = ThinnedPoints();
-    extent_ = measure_cloud(points_, part, threads, collects_thinned ? &thinned_ : nullptr, all);
+    extent_ = measure_cloud(points_, part, collects_thinned ? &thinned_ : nullptr, all);
   };
-  measure(progress.part(0.0, 0.8), &repeated);
-  phantoms_ = find_phantoms(repeated, source, progress.part(0.8, 0.9), threads);
+  const Stages stages(run, {8, 1, 1});
+  measure(stages[0], &repeated);
+  phantoms_ = find_phantoms(repeated, source, stages[1]);
   if (!phantoms_.empty()) {
     points_ = &real_.emplace(source, phantoms_);
-    measure(progress.part(0.9, 1.0), nullptr);
+    measure(stages[2], nullptr);
   }
   extent_.settle_huge();
 }
@@ -40,9 +40,9 @@ bool MeasuredCloud::lacks_normals() const {
          (extent_.points < kManyPoints || missing > extent_.points / kPointsPerMissing);
 }
 
-void MeasuredCloud::exclude_outliers(const Progress& progress, int threads) {
+void MeasuredCloud::exclude_outliers(const Run& run) {
   check_cloud(extent_);
-  exclude_far_outliers(points_, progress, threads, &extent_);
+  exclude_far_outliers(points_, run, &extent_);
   if (extent_.strays == 0 && extent_.dropped.huge == 0) return;
   points_ = &near_.emplace(points_, extent_.part.box);
 }

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/point_source.h"
 #include "prefilter/points/reconstruct.h"
 #include "prefilter/points/reconstruct/automatic_depth.h"
@@ -22,12 +22,12 @@ class MeasuredCloud {
  public:
   /// Measures the cloud and searches it for phantoms. Where `is_thinned`, a subset of the points is
   /// collected as well. Throws Error(kCancelled).
-  MeasuredCloud(PointSource* source, bool collects_thinned, const Progress& progress, int threads);
+  MeasuredCloud(PointSource* source, bool collects_thinned, const Run& run);
 
   /// Whether so many normals lack a direction that all should be estimated.
   bool lacks_normals() const;
   /// Excludes far outliers. Throws Error where too few points remain; Error(kCancelled).
-  void exclude_outliers(const Progress& progress, int threads);
+  void exclude_outliers(const Run& run);
 
   /// The cloud without excluded points, which are left out or have weight 0.
   PointSource* points() { return points_; }

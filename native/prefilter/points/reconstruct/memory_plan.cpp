@@ -79,7 +79,7 @@ std::string in_mib(double bytes) {
 
 int batches_at_once(const CloudLoad& load, const ReconstructOptions& options) {
   const double half = static_cast<double>(options.memory_limit) / 2.0;
-  const int most = resolve_threads(options.threads);
+  const int most = resolve_threads(options.run.threads());
   const double fit = std::floor(half / std::max(batch_bytes(load), 1.0));
   return fit >= most ? most : std::max(1, static_cast<int>(fit));
 }
@@ -109,7 +109,7 @@ MemoryPlan plan_memory(const SampleStore& store, const CloudLoad& load,
   const double held = static_cast<double>(store.held_bytes());
   // The D4 basis needs all slabs at once.
   const bool is_all = load.basis == WaveletBasis::kD4;
-  const int most = resolve_threads(options.threads);
+  const int most = resolve_threads(options.run.threads());
   for (const bool keeps_all : {true, false}) {
     // Cells in a file are not kept in memory.
     if (keeps_all && store.is_spilled() && !is_all) continue;

@@ -42,15 +42,14 @@ int index_along(double scaled) {
 
 }  // namespace
 
-NormalProbe::NormalProbe(const ThinnedPoints& thinned, const Box& box, const Progress& progress,
-                         int threads)
+NormalProbe::NormalProbe(const ThinnedPoints& thinned, const Box& box, const Run& run)
     : box_(box), longest_(std::max({box.size(0), box.size(1), box.size(2)})) {
   if (!(longest_ > 0.0)) return;
   std::vector<Vector3> positions;
   for (const ThinnedPoints::Entry& entry : thinned.entries()) {
     if (box.squared_distance(entry.position) == 0.0) positions.push_back(scaled(entry.position));
   }
-  const NeighborSearch search(positions, progress, threads);
+  const NeighborSearch search(positions, run);
   Neighbors neighbors;
   for (std::size_t i = 0; i < std::min(kMaxProbes, positions.size()); ++i) {
     search.find(search.places()[i], kProbeNeighbors + 1, &neighbors);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/point_source.h"
 #include "prefilter/points/reconstruct/automatic_depth.h"
 
@@ -28,7 +28,7 @@ class NormalProbe {
 
   /// `thinned` is a subset of the cloud's positions; it bounds how far each probe's neighbors are.
   /// A box without extent yields no probes. Throws Error(kCancelled).
-  NormalProbe(const ThinnedPoints& thinned, const Box& box, const Progress& progress, int threads);
+  NormalProbe(const ThinnedPoints& thinned, const Box& box, const Run& run);
 
   /// The points of a batch that may be among a probe's nearest.
   std::vector<NearPoint> find_near(const PointBatch& batch) const;

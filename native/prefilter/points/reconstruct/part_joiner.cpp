@@ -20,7 +20,7 @@ PartJoiner::PartJoiner(const SampleGrid& grid, int slab_height, std::size_t attr
     simplifier_.emplace(
         SimplifierOptions{options.adaptivity * grid.cell,
                           attribute_count + (options.support ? kSupportAttributes : 0),
-                          options.support, options.threads, options.progress},
+                          options.support, options.run},
         sink_);
     sink_ = &*simplifier_;
   }
@@ -41,11 +41,11 @@ void PartJoiner::add(const SlabMesh& part) {
   next->end_part(joiner_->shared());
 }
 
-void PartJoiner::finish(const Progress& progress, ReconstructReport* report) {
+void PartJoiner::finish(const Run& run, ReconstructReport* report) {
   report->vertices = joiner_->vertices();
   report->triangles = joiner_->triangles();
   if (cutter_) {
-    report->trimmed = cutter_->finish(progress, sink_);
+    report->trimmed = cutter_->finish(run, sink_);
     report->vertices = cutter_->counts().vertices;
     report->triangles = cutter_->counts().triangles;
     report->is_spilled = report->is_spilled || cutter_->is_spilled();

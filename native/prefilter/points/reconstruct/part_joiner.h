@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/mesh_sink.h"
 #include "prefilter/points/reconstruct.h"
 #include "prefilter/points/reconstruct/mesh_joiner.h"
@@ -30,7 +30,7 @@ class PartJoiner {
   /// Adds the next slab's part, from bottom to top.
   void add(const SlabMesh& part);
   /// Outputs the remaining mesh, and writes its size and trimming to the report.
-  void finish(const Progress& progress, ReconstructReport* report);
+  void finish(const Run& run, ReconstructReport* report);
 
  private:
   SampleGrid grid_;

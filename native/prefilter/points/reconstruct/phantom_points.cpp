@@ -103,12 +103,11 @@ class CountedPositions {
 };
 
 std::vector<CountedPositions::Count> count_positions(const RepeatedPositions& repeated,
-                                                     PointSource* source, const Progress& progress,
-                                                     int threads) {
+                                                     PointSource* source, const Run& run) {
   CountedPositions counted(repeated);
   using Entries = std::vector<ThinnedPoints::Entry>;
   for_batches<Entries>(
-      source, progress, threads,
+      source, run,
       [&](const PointBatch& batch, Entries* entries) {
         entries->clear();
         for (const Vector3& position : batch.positions) {
@@ -143,11 +142,10 @@ std::vector<Vector3> scaled_positions(const std::vector<CountedPositions::Count>
 // Classifies positions by their neighbors.
 class PhantomClassifier {
  public:
-  PhantomClassifier(const std::vector<CountedPositions::Count>& counts, const Progress& progress,
-                    int threads)
+  PhantomClassifier(const std::vector<CountedPositions::Count>& counts, const Run& run)
       : counts_(counts),
         positions_(scaled_positions(counts)),
-        search_(positions_, progress, threads),
+        search_(positions_, run),
         points_(search_.positions().size()) {
     for (std::size_t i = 0; i < counts.size(); ++i)
       points_[search_.places()[i]] += counts[i].points;
@@ -217,11 +215,12 @@ void RepeatedPositions::add(const std::vector<ThinnedPoints::Entry>& entries, st
 }
 
 std::vector<PhantomPlace> find_phantoms(const RepeatedPositions& repeated, PointSource* source,
-                                        const Progress& progress, int threads) {
+                                        const Run& run) {
   std::vector<PhantomPlace> phantoms;
   if (repeated.is_empty()) return phantoms;
-  const auto counts = count_positions(repeated, source, progress.part(0.0, 0.9), threads);
-  PhantomClassifier surroundings(counts, progress.part(0.9, 1.0), threads);
+  const Stages stages(run, {9, 1});
+  const auto counts = count_positions(repeated, source, stages[0]);
+  PhantomClassifier surroundings(counts, stages[1]);
   using Kind = PhantomClassifier::Kind;
   std::vector<Kind> kinds(counts.size(), Kind::kOrdinary);
   for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -239,22 +238,22 @@ std::vector<PhantomPlace> find_phantoms(const RepeatedPositions& repeated, Point
   return phantoms;
 }
 
-std::vector<PhantomPlace> find_phantoms(PointSource* source, const Progress& progress,
-                                        int threads) {
+std::vector<PhantomPlace> find_phantoms(PointSource* source, const Run& run) {
   struct PositionCounts {
     std::vector<ThinnedPoints::Entry> entries;
     std::size_t points = 0;
   };
   RepeatedPositions repeated;
+  const Stages stages(run, {1, 1});
   for_batches<PositionCounts>(
-      source, progress.part(0.0, 0.5), threads,
+      source, stages[0],
       [](const PointBatch& batch, PositionCounts* batch_counts) {
         *batch_counts = {RepeatedPositions::of_batch(batch), batch.positions.size()};
       },
       [&](const PositionCounts& batch_counts) {
         repeated.add(batch_counts.entries, batch_counts.points);
       });
-  return find_phantoms(repeated, source, progress.part(0.5, 1.0), threads);
+  return find_phantoms(repeated, source, stages[1]);
 }
 
 PointsWithout::PointsWithout(PointSource* source, const std::vector<PhantomPlace>& places)

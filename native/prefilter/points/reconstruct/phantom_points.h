@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/phantoms.h"
 #include "prefilter/points/point_source.h"
 #include "prefilter/points/reconstruct/automatic_depth.h"
@@ -39,7 +39,7 @@ class RepeatedPositions {
 /// The phantoms among the repeated positions of a source, which is read again if there are any;
 /// phantoms.h defines phantoms.
 std::vector<PhantomPlace> find_phantoms(const RepeatedPositions& repeated, PointSource* source,
-                                        const Progress& progress, int threads);
+                                        const Run& run);
 
 /// A source without the points at given positions.
 class PointsWithout final : public ChangedPoints {

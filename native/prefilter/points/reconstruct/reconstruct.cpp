@@ -37,7 +37,7 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
                     options.basis, options.adaptivity > 0.0};
   const int width = batches_at_once(load, options);
   MeasuredCloud cloud(source, is_automatic || options.check_normals,
-                      options.progress.part(0.0, 0.08), width);
+                      options.run.part(0.0, 0.08).with_threads(width));
   ReconstructReport report;
   report.phantoms = cloud.phantoms();
   if (options.check_normals && cloud.lacks_normals()) {
@@ -45,7 +45,7 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
     return report;
   }
   load.points = cloud.extent().part.points;
-  cloud.exclude_outliers(options.progress.part(0.08, 0.1), width);
+  cloud.exclude_outliers(options.run.part(0.08, 0.1).with_threads(width));
   source = cloud.points();
   const CloudExtent& extent = cloud.extent();
   const SampleGrid grid = grid_of(extent.part.box, cloud.thinned(), options);
@@ -53,12 +53,13 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   report.points += cloud.phantom_points();
   std::optional<NormalProbe> probe;
   if (options.check_normals) {
-    probe.emplace(cloud.thinned(), extent.part.box, options.progress.part(0.12, 0.13), width);
+    probe.emplace(cloud.thinned(), extent.part.box,
+                  options.run.part(0.12, 0.13).with_threads(width));
   }
   cloud.thinned() = ThinnedPoints();
   SampleStore store(grid.depth, slab_bits(grid.depth), source->attributes().size(),
                     options.memory_limit / 4, options.folder);
-  gather_samples(source, grid, options.progress.part(0.13, 0.4), width, &store,
+  gather_samples(source, grid, options.run.part(0.13, 0.4).with_threads(width), &store,
                  probe ? &*probe : nullptr);
   if (probe) report.contradiction = probe->contradiction();
   if (report.contradiction > kMostContradiction) {
@@ -69,17 +70,16 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   if (!plan.is_held) store.spill();
   report.is_spilled = store.is_spilled();
   ReconstructOptions slab_options = options;
-  slab_options.progress = options.progress.part(0.4, 1.0);
-  slab_options.threads = plan.threads;
+  slab_options.run = options.run.part(0.4, 1.0).with_threads(plan.threads);
   slab_options.memory_limit = plan.left;
   SurfaceParts parts(source, load.attributes, grid, extent, slab_options, plan.keeps_all, &store);
   parts.describe(&report);
   ReconstructOptions mesh_options = slab_options;
-  mesh_options.progress = slab_options.progress.part(0.6, 0.6);
+  mesh_options.run = slab_options.run.part(0.6, 0.6);
   PartJoiner joiner(grid, parts.slab_height(), load.attributes, mesh_options, sink);
-  parts.make(0, parts.count(), slab_options.progress.part(0.6, 0.95),
+  parts.make(0, parts.count(), slab_options.run.part(0.6, 0.95),
              [&](const SlabMesh& part) { joiner.add(part); });
-  joiner.finish(slab_options.progress.part(0.95, 1.0), &report);
+  joiner.finish(slab_options.run.part(0.95, 1.0), &report);
   check_mesh(options, report);
   return report;
 }

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 namespace {
@@ -83,8 +83,8 @@ std::unique_ptr<SampleStore> SampleStore::open(std::unique_ptr<ArchiveReader> fi
   if (shape.size() != 3 || shape[0] > kRowShift || shape[1] > shape[0]) file->refuse();
   const auto depth = static_cast<int>(shape[0]);
   auto store = std::make_unique<SampleStore>(depth, static_cast<int>(shape[1]), shape[2], 0, "");
-  for (Runs& runs : store->slabs_) {
-    Run run;
+  for (CellRuns& runs : store->slabs_) {
+    CellRun run;
     run.is_in_file = true;
     run.offset = file->place();
     run.count = file->skip_all<SampleCell>();
@@ -120,7 +120,7 @@ void SampleStore::add(const SampleCells& run) {
         std::lower_bound(run.cells.begin() + static_cast<std::ptrdiff_t>(begin), run.cells.end(),
                          limit, [](const SampleCell& c, CellKey key) { return c.key < key; }) -
         run.cells.begin());
-    Runs& runs = slabs_[static_cast<std::size_t>(slab)];
+    CellRuns& runs = slabs_[static_cast<std::size_t>(slab)];
     runs.emplace_back();
     append(run, begin, end, attribute_count_, &runs.back().cells);
     runs.back().count = end - begin;
@@ -134,11 +134,11 @@ void SampleStore::add(const SampleCells& run) {
   if (held_ * bytes_per_cell() > memory_limit_) spill();
 }
 
-void SampleStore::merge_last(Runs* runs) {
-  Run last = std::move(runs->back());
+void SampleStore::merge_last(CellRuns* runs) {
+  CellRun last = std::move(runs->back());
   runs->pop_back();
-  Run& first = runs->back();
-  for (const Run* run : {&first, &last}) held_ -= run->is_in_file ? 0 : run->count;
+  CellRun& first = runs->back();
+  for (const CellRun* run : {&first, &last}) held_ -= run->is_in_file ? 0 : run->count;
   if (first.is_in_file) first.cells = read(first);
   if (last.is_in_file) last.cells = read(last);
   first.cells = merged(first.cells, last.cells, attribute_count_);
@@ -149,8 +149,8 @@ void SampleStore::merge_last(Runs* runs) {
 
 void SampleStore::spill() {
   if (!file_) file_ = std::make_unique<TemporaryFile>(folder_);
-  for (Runs& runs : slabs_) {
-    for (Run& run : runs) {
+  for (CellRuns& runs : slabs_) {
+    for (CellRun& run : runs) {
       if (run.is_in_file) continue;
       run.offset = file_->size();
       run.is_in_file = true;
@@ -163,7 +163,7 @@ void SampleStore::spill() {
 }
 
 void SampleStore::end_cloud(std::size_t slab) {
-  Runs& runs = slabs_[slab];
+  CellRuns& runs = slabs_[slab];
   while (runs.size() > 1U + is_begun_[slab]) merge_last(&runs);
   if (runs.size() > 1) merge_last(&runs);
   is_begun_[slab] = runs.empty() ? 0 : 1;
@@ -190,10 +190,10 @@ void SampleStore::save(ArchiveWriter* file) const {
 void SampleStore::finish(int threads) {
   // When spilling to a file, slabs take turns so that one at a time is in memory.
   const int width = file_ ? 1 : threads;
-  parallel_for(slab_count(), width, Progress(), [&](std::int64_t i) {
+  parallel_for(slab_count(), Run(width), [&](std::int64_t i) {
     end_cloud(static_cast<std::size_t>(i));
-    Runs& runs = slabs_[static_cast<std::size_t>(i)];
-    for (Run& run : runs) {
+    CellRuns& runs = slabs_[static_cast<std::size_t>(i)];
+    for (CellRun& run : runs) {
       run.cells.cells.shrink_to_fit();
       run.cells.attributes.shrink_to_fit();
     }
@@ -209,11 +209,11 @@ std::size_t SampleStore::size() const {
 
 std::size_t SampleStore::size(int index) const {
   std::size_t cells = 0;
-  for (const Run& run : slabs_[static_cast<std::size_t>(index)]) cells += run.count;
+  for (const CellRun& run : slabs_[static_cast<std::size_t>(index)]) cells += run.count;
   return cells;
 }
 
-SampleCells SampleStore::read(const Run& run) const {
+SampleCells SampleStore::read(const CellRun& run) const {
   if (!run.is_in_file) return run.cells;
   SampleCells cells;
   if (opened_) {
@@ -230,12 +230,12 @@ SampleCells SampleStore::read(const Run& run) const {
 }
 
 SampleCells SampleStore::slab(int index) const {
-  const Runs& runs = slabs_[static_cast<std::size_t>(index)];
+  const CellRuns& runs = slabs_[static_cast<std::size_t>(index)];
   return runs.empty() ? SampleCells() : read(runs.front());
 }
 
 SampleCells SampleStore::take(int index) {
-  Runs& runs = slabs_[static_cast<std::size_t>(index)];
+  CellRuns& runs = slabs_[static_cast<std::size_t>(index)];
   if (runs.empty() || runs.front().is_in_file) return slab(index);
   return std::move(std::exchange(runs, {}).front().cells);
 }

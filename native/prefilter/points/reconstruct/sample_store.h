@@ -58,7 +58,7 @@ class SampleStore {
   int depth() const;
 
   // Cells in memory, or in the file.
-  struct Run {
+  struct CellRun {
     SampleCells cells;
     std::uint64_t offset = 0;
     std::size_t count = 0;
@@ -66,11 +66,11 @@ class SampleStore {
     std::uint64_t attributes_offset = 0;  // offset of the attributes, in an opened file
   };
   // After an `add`, each run except the last is at least twice as long as the next.
-  using Runs = std::vector<Run>;
+  using CellRuns = std::vector<CellRun>;
 
-  void merge_last(Runs* runs);
+  void merge_last(CellRuns* runs);
   void end_cloud(std::size_t slab);
-  SampleCells read(const Run& run) const;
+  SampleCells read(const CellRun& run) const;
   std::size_t bytes_per_cell() const {
     return sizeof(SampleCell) + attribute_count_ * sizeof(float);
   }
@@ -79,7 +79,7 @@ class SampleStore {
   std::size_t attribute_count_;
   std::uint64_t memory_limit_;
   std::string folder_;
-  std::vector<Runs> slabs_;
+  std::vector<CellRuns> slabs_;
   std::vector<std::uint8_t> is_begun_;  // whether the first run holds the sums of earlier clouds
   std::atomic<std::size_t> held_ = 0;   // cells in memory
   std::unique_ptr<TemporaryFile> file_;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/reconstruct/plane_patches.h"
 
 namespace prefilter {
@@ -52,7 +52,7 @@ void Slabs::advance_to(int begin, int end, SlabStage stage) {
   if (stage == SlabStage::kCoefficients) advance_to(begin - 1, end + 1, SlabStage::kLeaves);
   if (stage == SlabStage::kSolved) advance_to(begin - 1, end + 1, SlabStage::kValues);
   advance_to(begin, end, static_cast<SlabStage>(static_cast<int>(stage) - 1));
-  parallel_for(end - begin, threads_, Progress(), [&](std::int64_t i) {
+  parallel_for(end - begin, Run(threads_), [&](std::int64_t i) {
     const int s = begin + static_cast<int>(i);
     if (!is_there(s)) advance(s, stage);
   });

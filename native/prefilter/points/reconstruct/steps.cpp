@@ -145,9 +145,10 @@ void measure_step(PointSource* share, std::size_t number, const StepFiles& files
   const CloudLoad load = load_of(points, share->attributes().size(), options);
   const int width = batches_at_once(load, options);
   RepeatedPositions repeated;
+  const Stages stages(options.run, {9, 1});
   const CloudExtent extent =
-      measure_cloud(share, options.progress.part(0.0, 0.9), width, nullptr, &repeated);
-  const auto phantoms = find_phantoms(repeated, share, options.progress.part(0.9, 1.0), width);
+      measure_cloud(share, stages[0].with_threads(width), nullptr, &repeated);
+  const auto phantoms = find_phantoms(repeated, share, stages[1].with_threads(width));
   if (!phantoms.empty()) {
     const PhantomPlace& first = phantoms.front();
     throw_invalid("box: none; " + std::to_string(first.points) + " points are at one place, (" +
@@ -171,8 +172,8 @@ void count_step(PointSource* share, std::size_t number, const StepFiles& files,
   SampleStore store(grid.depth, slab_bits(grid.depth), attributes, options.memory_limit / 4,
                     options.folder);
   PointsWithin near(share, extent.part.box);
-  gather_samples(extent.dropped.huge > 0 ? &near : share, grid, options.progress,
-                 batches_at_once(load, options), &store);
+  gather_samples(extent.dropped.huge > 0 ? &near : share, grid,
+                 options.run.with_threads(batches_at_once(load, options)), &store);
   ArchiveWriter file(files.counts[number], mark_of(StepFile::kCounts, files));
   store.save(&file);
   file.commit();
@@ -188,14 +189,13 @@ void merge_step(const StepFiles& files, const ReconstructOptions& options) {
     if (!all->has_shape_of(*own)) throw_invalid("'" + files.counts[k] + "' has other cells");
     for (int s = 0; s < own->slab_count(); ++s) all->add(own->slab(s));
     all->end_cloud();
-    options.progress.report(0.9 * static_cast<double>(k + 1) /
-                            static_cast<double>(files.counts.size()));
+    options.run.report(0.9 * static_cast<double>(k + 1) / static_cast<double>(files.counts.size()));
   }
-  all->finish(options.threads);
+  all->finish(options.run.threads());
   ArchiveWriter file(files.cells, mark_of(StepFile::kCells, files));
   all->save(&file);
   file.commit();
-  options.progress.report(1.0);
+  options.run.report(1.0);
 }
 
 void part_step(std::size_t number, std::size_t attributes, const StepFiles& files,
@@ -210,7 +210,7 @@ void part_step(std::size_t number, std::size_t attributes, const StepFiles& file
   const CloudLoad load = load_of(extent.part.points, attributes, options);
   const MemoryPlan plan = plan_memory(*store, load, options);
   ReconstructOptions slab_options = options;
-  slab_options.threads = plan.threads;
+  slab_options.run = Run(plan.threads);
   SurfaceParts surface(nullptr, attributes, grid, extent, slab_options, plan.keeps_all,
                        store.get());
   ReconstructReport report;
@@ -222,7 +222,7 @@ void part_step(std::size_t number, std::size_t attributes, const StepFiles& file
       std::vector<PartHead>{{begin, end, report.is_flipped ? 1 : 0, report.is_room ? 1 : 0,
                              report.outliers, report.residual}});
   if (begin < end) {
-    surface.make(begin, end, options.progress.part(0.6, 1.0),
+    surface.make(begin, end, options.run.part(0.6, 1.0),
                  [&](const SlabMesh& part) { write_part(part, &file); });
   }
   file.commit();
@@ -236,7 +236,7 @@ ReconstructReport join_step(std::size_t attributes, const StepFiles& files,
   ReconstructReport report;
   describe_grid(grid, extent, &report);
   ReconstructOptions mesh_options = options;
-  mesh_options.progress = options.progress.part(0.0, 0.0);
+  mesh_options.run = options.run.part(0.0, 0.0);
   const int slabs = 1 << (grid.depth - slab_bits(grid.depth));
   PartJoiner joiner(grid, 1 << slab_bits(grid.depth), attributes, mesh_options, sink);
   for (std::size_t k = 0; k < files.parts.size(); ++k) {
@@ -254,10 +254,9 @@ ReconstructReport join_step(std::size_t attributes, const StepFiles& files,
       joiner.add(read_part(part_width(attributes, options), &file));
     }
     file.end();
-    options.progress.report(0.5 * static_cast<double>(k + 1) /
-                            static_cast<double>(files.parts.size()));
+    options.run.report(0.5 * static_cast<double>(k + 1) / static_cast<double>(files.parts.size()));
   }
-  joiner.finish(options.progress.part(0.5, 1.0), &report);
+  joiner.finish(options.run.part(0.5, 1.0), &report);
   check_mesh(options, report);
   return report;
 }

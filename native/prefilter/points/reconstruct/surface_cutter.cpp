@@ -200,13 +200,13 @@ SurfaceCutter::SurfaceCutter(const TrimOptions& options, std::size_t width, doub
       builder_({options.distance, cell, width}, &regions_),
       parts_(memory_limit, std::move(folder)) {}
 
-TrimReport SurfaceCutter::finish(const Progress& progress, MeshSink* sink) {
+TrimReport SurfaceCutter::finish(const Run& run, MeshSink* sink) {
   const TrimReport report = regions_.decide(options_);
   const std::size_t out_width = keeps_support_ ? width_ : width_ - kSupportAttributes;
   CutWriter writer(regions_, options_.distance, width_, out_width, &counts_);
   for (std::size_t i = 0; i < parts_.count(); ++i) {
     writer.write(parts_.take(i), sink);
-    progress.report(static_cast<double>(i + 1) / static_cast<double>(parts_.count()));
+    run.report(static_cast<double>(i + 1) / static_cast<double>(parts_.count()));
   }
   return report;
 }

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/mesh_sink.h"
 #include "prefilter/points/reconstruct/cut_builder.h"
 #include "prefilter/points/reconstruct/cut_parts.h"
@@ -50,7 +50,7 @@ class SurfaceCutter final : public MeshSink {
   }
 
   /// Outputs the remaining mesh in parts.
-  TrimReport finish(const Progress& progress, MeshSink* sink);
+  TrimReport finish(const Run& run, MeshSink* sink);
 
   const MeshCounts& counts() const { return counts_; }
   bool is_spilled() const { return parts_.is_spilled(); }

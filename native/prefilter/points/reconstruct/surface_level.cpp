@@ -14,7 +14,7 @@
 namespace prefilter {
 namespace {
 
-MeanSample mean_at_samples(float sign, const ReconstructOptions& options, const Progress& progress,
+MeanSample mean_at_samples(float sign, const ReconstructOptions& options, const Run& run,
                            Slabs* slabs) {
   const int depth = slabs->depth();
   const auto cells_of = [&](int s) -> const std::vector<SampleCell>& {
@@ -39,14 +39,14 @@ MeanSample mean_at_samples(float sign, const ReconstructOptions& options, const 
       for (std::size_t a = 0; a < 3; ++a) sum.normal[a] += static_cast<double>(cell.normal[a]);
     }
   };
-  for_slabs({SlabStage::kSolved, 1}, progress, options.threads, slabs, add_up, join);
+  for_slabs({SlabStage::kSolved, 1}, run, slabs, add_up, join);
   return {sum.value / weight, (1.0 / weight) * sum.normal};
 }
 
 }  // namespace
 
-SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_inward,
-                                const Progress& progress, Slabs* slabs) {
+SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_inward, const Run& run,
+                                Slabs* slabs) {
   const bool is_flipped = is_inward && !options.are_sides_known;
   const bool may_be_room = is_inward && options.are_sides_known;
   MeanSample mean;
@@ -55,7 +55,7 @@ SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_inwar
   constexpr int kMinSolvedDepth = 4;
   const bool is_known = is_solved && slabs->depth() >= kMinSolvedDepth;
   if ((options.isovalue == Isovalue::kMean && !is_known) || may_be_room) {
-    mean = mean_at_samples(is_flipped ? -1.0F : 1.0F, options, progress, slabs);
+    mean = mean_at_samples(is_flipped ? -1.0F : 1.0F, options, run, slabs);
   }
   // In a scanned room the normals point into the enclosed space, so the enclosed space counts as
   // inside; the outside is unbounded. The solve enforces one value at all samples, so only the

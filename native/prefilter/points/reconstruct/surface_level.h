@@ -4,7 +4,7 @@
 #pragma once
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/reconstruct.h"
 #include "prefilter/points/reconstruct/sample_cell.h"
 #include "prefilter/points/reconstruct/slabs.h"
@@ -22,8 +22,8 @@ struct SurfaceLevel {
 /// Finds the level that the options request, from the mean at the samples where needed.
 /// `is_inward`: most normals point inward. Everything except the slabs' values must have been
 /// computed. Throws Error(kCancelled).
-SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_inward,
-                                const Progress& progress, Slabs* slabs);
+SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_inward, const Run& run,
+                                Slabs* slabs);
 
 /// Weighted means over the samples of a cloud.
 struct MeanSample {

@@ -23,10 +23,10 @@ struct FunctionFindings {
 };
 
 // Computes the values of all slabs in the D4 basis.
-FunctionFindings find_d4_trees(PointSource* source, const SampleGrid& grid,
-                               const Progress& progress, int threads, Slabs* slabs) {
+FunctionFindings find_d4_trees(PointSource* source, const SampleGrid& grid, const Run& run,
+                               Slabs* slabs) {
   slabs->advance_to(0, slabs->count(), SlabStage::kLeaves);
-  D4Function made = make_d4_function(source, grid, *slabs, progress, threads);
+  D4Function made = make_d4_function(source, grid, *slabs, run);
   for (int s = 0; s < slabs->count(); ++s) {
     slabs->set_values(s, std::move(made.trees[static_cast<std::size_t>(s)]));
   }
@@ -43,11 +43,9 @@ FunctionFindings find_function(PointSource* source, const SampleGrid& grid,
                                const ReconstructOptions& options, Slabs* slabs) {
   FunctionFindings findings;
   if (options.basis == WaveletBasis::kD4) {
-    findings =
-        find_d4_trees(source, grid, options.progress.part(0.15, 0.4), options.threads, slabs);
+    findings = find_d4_trees(source, grid, options.run.part(0.15, 0.4), slabs);
   } else {
-    findings.left_out =
-        build_coarse_tree(options.progress.part(0.15, 0.35), options.threads, slabs);
+    findings.left_out = build_coarse_tree(options.run.part(0.15, 0.35), slabs);
     findings.is_inward = slabs->coarse.root < 0.0F;
     // The share of the box around the points that is inside. In a room the walls enclose most of
     // the box; for a solid object they enclose the object.
@@ -80,22 +78,20 @@ SurfaceParts::SurfaceParts(PointSource* source, std::size_t attribute_count, con
                            bool keeps_all, SampleStore* store)
     : options_(options),
       slabs_(store, grid.depth, grid.depth - slab_bits(grid.depth), attribute_count, keeps_all,
-             options.threads),
+             options.run.threads()),
       attribute_count_(attribute_count),
       cell_(grid.cell) {
   slabs_.mean_weight = extent.part.weight / static_cast<double>(extent.part.points);
   slabs_.box_share = box_share(grid, extent.part.box);
-  const int largest = compute_whole_samples(attribute_count, options.progress.part(0.0, 0.15),
-                                            options.threads, &slabs_);
+  const int largest = compute_whole_samples(attribute_count, options.run.part(0.0, 0.15), &slabs_);
   const FunctionFindings findings = find_function(source, grid, options, &slabs_);
   outliers_ = findings.left_out / extent.part.weight;
   is_flipped_ = findings.is_inward && !options.are_sides_known;
-  level_ =
-      find_surface_level(options, findings.is_inward, options.progress.part(0.35, 0.6), &slabs_);
+  level_ = find_surface_level(options, findings.is_inward, options.run.part(0.35, 0.6), &slabs_);
   noise_ = find_noise(largest, &slabs_);
 }
 
-void SurfaceParts::make(int begin, int end, const Progress& progress,
+void SurfaceParts::make(int begin, int end, const Run& run,
                         const std::function<void(const SlabMesh&)>& use) {
   const SurfaceSamples surface = {slabs_, attribute_count_, noise_, cell_};
   std::vector<SlabMesh> parts(static_cast<std::size_t>(slabs_.count()));
@@ -109,8 +105,7 @@ void SurfaceParts::make(int begin, int end, const Progress& progress,
   const auto hand_on = [&](int s) {
     use(std::exchange(parts[static_cast<std::size_t>(s)], SlabMesh()));
   };
-  for_slabs({SlabStage::kSolved, 1, true, begin, end}, progress, options_.threads, &slabs_,
-            make_part, hand_on);
+  for_slabs({SlabStage::kSolved, 1, true, begin, end}, run, &slabs_, make_part, hand_on);
 }
 
 void SurfaceParts::describe(ReconstructReport* report) const {

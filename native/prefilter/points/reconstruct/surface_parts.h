@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/point_source.h"
 #include "prefilter/points/reconstruct.h"
 #include "prefilter/points/reconstruct/gather_samples.h"
@@ -38,8 +38,7 @@ class SurfaceParts {
   int slab_height() const { return slabs_.height(); }
   /// Makes the parts of slabs from `begin` up to `end`, several at a time, and passes them to `use`
   /// in order.
-  void make(int begin, int end, const Progress& progress,
-            const std::function<void(const SlabMesh&)>& use);
+  void make(int begin, int end, const Run& run, const std::function<void(const SlabMesh&)>& use);
 
   /// Writes the findings about the samples to the report.
   void describe(ReconstructReport* report) const;

@@ -113,8 +113,7 @@ void SurfaceSimplifier::end_part(std::span<const std::int64_t> shared) {
     append_new(&added_, &pending_.facets);
     FixedVertices fixed{is_waiting, far_vertices()};
     flag_open_vertices(pending_.facets.triangles, &fixed.is_open);
-    simplify_facets(pending_.mesh, scale, std::move(fixed), options_.progress, options_.threads,
-                    &pending_.facets);
+    simplify_facets(pending_.mesh, scale, std::move(fixed), options_.run, &pending_.facets);
   }
   for (int ring = 1; ring < kWaitingRings; ++ring)
     grow_by_ring(pending_.facets.triangles, &is_waiting);

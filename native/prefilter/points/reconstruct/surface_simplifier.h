@@ -14,7 +14,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/mesh_sink.h"
 #include "prefilter/points/reconstruct/mesh_counts.h"
 #include "prefilter/voxels/remesh/faceted_mesh.h"
@@ -26,8 +26,7 @@ struct SimplifierOptions {
   double tolerance;   // above 0: maximum distance from the original surface, as in `simplify`
   std::size_t width;  // number of attributes per vertex
   bool has_support;   // the last two are those of support_attributes()
-  int threads;
-  Progress progress;  // for canceling only
+  Run run;            // for canceling only
 };
 
 /// Forwards a mesh to a sink with fewer vertices, which neither move nor change their attributes.

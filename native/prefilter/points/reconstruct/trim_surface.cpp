@@ -72,7 +72,7 @@ std::vector<std::int64_t> border_vertices(std::span<const std::array<std::int32_
 TrimReport trim_surface(std::span<const Vector3> positions,
                         std::span<const std::array<std::int32_t, 3>> triangles,
                         std::span<const float> attributes, std::size_t width,
-                        const TrimOptions& options, const Progress& progress, TrimmedMesh* result) {
+                        const TrimOptions& options, const Run& run, TrimmedMesh* result) {
   check_options(options);
   check_mesh(positions.size(), triangles, attributes, width);
   SurfaceCutter cutter(options, width, 0.0, true, std::numeric_limits<std::uint64_t>::max(), "");
@@ -83,10 +83,10 @@ TrimReport trim_surface(std::span<const Vector3> positions,
   cutter.add_triangles(std::move(wide));
   // Regions that reach a boundary of the mesh fill no hole.
   cutter.request_cut(border_vertices(triangles));
-  progress.report(0.2);
+  run.report(0.2);
   cutter.end_part({});
   ArraySink sink;
-  const TrimReport report = cutter.finish(progress.part(0.6, 1.0), &sink);
+  const TrimReport report = cutter.finish(run.part(0.6, 1.0), &sink);
   *result = {sink.take_positions(), sink.take_triangles(), sink.take_attributes()};
   return report;
 }

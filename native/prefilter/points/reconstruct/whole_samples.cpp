@@ -21,8 +21,7 @@ void append(const SampleCells& more, SampleCells* all) {
 
 }  // namespace
 
-int compute_whole_samples(std::size_t attribute_count, const Progress& progress, int threads,
-                          Slabs* slabs) {
+int compute_whole_samples(std::size_t attribute_count, const Run& run, Slabs* slabs) {
   SampleCells tops;
   std::vector<double> weights(static_cast<std::size_t>(slabs->depth()) + 1);
   std::size_t most = 0;
@@ -38,7 +37,7 @@ int compute_whole_samples(std::size_t attribute_count, const Progress& progress,
     }
   };
   for_slabs(
-      {SlabStage::kCrossedCells}, progress, threads, slabs, [](int) {}, collect);
+      {SlabStage::kCrossedCells}, run, slabs, [](int) {}, collect);
   slabs->whole = make_sample_slab(std::move(tops), slabs->top(), 0, attribute_count);
   find_crossed_cells(nullptr, nullptr, slabs->mean_weight, &slabs->whole);
   slabs->whole.at(0).leaf.assign(slabs->whole.at(0).size(), 0);

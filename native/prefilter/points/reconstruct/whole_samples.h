@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/reconstruct/sample_slab.h"
 #include "prefilter/points/reconstruct/slabs.h"
 
@@ -13,8 +13,7 @@ namespace prefilter {
 
 /// Sets `whole`, `offsets` and `least_leaf` of Slabs, the inputs of kLeaves and kCoefficients.
 /// Returns the slab with the most cells. Throws Error(kCancelled).
-int compute_whole_samples(std::size_t attribute_count, const Progress& progress, int threads,
-                          Slabs* slabs);
+int compute_whole_samples(std::size_t attribute_count, const Run& run, Slabs* slabs);
 
 /// Adds the weight of a slab's samples to that of the depth at which they count, the largest at
 /// which the surface crosses their cell. Samples that count above the slab's first level are

@@ -49,13 +49,13 @@ std::uint64_t grid_size(const PlyFile& file, std::string_view name) {
 }
 
 // Reports rarely, as reading the clock takes longer than a row.
-void report_rows(const PlyFile& file, std::uint64_t count, const Progress& progress) {
+void report_rows(const PlyFile& file, std::uint64_t count, const Run& run) {
   constexpr std::uint64_t kRowsPerReport = 1 << 12;
   if (file.rows_left() % kRowsPerReport != 0) return;
-  progress.report(1.0 - static_cast<double>(file.rows_left()) / static_cast<double>(count));
+  run.report(1.0 - static_cast<double>(file.rows_left()) / static_cast<double>(count));
 }
 
-std::optional<RangeGrid> range_grid_of(PlyFile file, const Progress& progress) {
+std::optional<RangeGrid> range_grid_of(PlyFile file, const Run& run) {
   const std::size_t element_index = file.find("range_grid");
   if (element_index == file.elements().size()) return std::nullopt;
   const PlyElement& element = file.elements()[element_index];
@@ -72,9 +72,9 @@ std::optional<RangeGrid> range_grid_of(PlyFile file, const Progress& progress) {
   const std::size_t list = index_list(file, element);
   const std::uint64_t count = point_count(file);
   RangeGrid grid{static_cast<std::int64_t>(rows), static_cast<std::int64_t>(columns), {}};
-  file.go_to(element_index, progress);
+  file.go_to(element_index, run);
   while (file.rows_left() > 0) {
-    report_rows(file, file.elements()[element_index].count, progress);
+    report_rows(file, file.elements()[element_index].count, run);
     file.read_row();
     const std::span<const double> points = file.list(list);
     grid.points.push_back(points.empty() ? -1 : checked_index(file, points[0], count));
@@ -98,8 +98,7 @@ std::optional<std::vector<std::size_t>> scalars_named(
 }
 
 // Reads positions; returns the UVs of vertices, if there are any.
-std::vector<std::array<double, 2>> read_vertices(PlyFile* file, const Progress& progress,
-                                                 PlyMesh* mesh) {
+std::vector<std::array<double, 2>> read_vertices(PlyFile* file, const Run& run, PlyMesh* mesh) {
   std::vector<std::array<double, 2>> uvs;
   const std::size_t vertex = file->find("vertex");
   if (vertex == file->elements().size()) return uvs;
@@ -107,9 +106,9 @@ std::vector<std::array<double, 2>> read_vertices(PlyFile* file, const Progress& 
   const auto axes = scalars_named(element, {{"x", "y", "z"}});
   if (!axes) throw_invalid(file->name() + ": its element 'vertex' has no x, y and z");
   const auto uv = scalars_named(element, {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}});
-  file->go_to(vertex, progress);
+  file->go_to(vertex, run);
   while (file->rows_left() > 0) {
-    report_rows(*file, element.count, progress);
+    report_rows(*file, element.count, run);
     file->read_row();
     const std::span<const double> values = file->scalars();
     mesh->positions.push_back({values[(*axes)[0]], values[(*axes)[1]], values[(*axes)[2]]});
@@ -118,21 +117,22 @@ std::vector<std::array<double, 2>> read_vertices(PlyFile* file, const Progress& 
   return uvs;
 }
 
-PlyMesh mesh_of(PlyFile file, const Progress& progress) {
+PlyMesh mesh_of(PlyFile file, const Run& run) {
   PlyMesh mesh;
   const std::size_t face = file.find("face");
   const bool has_faces = face < file.elements().size();
   const std::size_t list = has_faces ? index_list(file, file.elements()[face]) : 0;
-  const auto uvs = read_vertices(&file, progress.part(0.0, 0.5), &mesh);
+  const Stages stages(run, {1, 1});
+  const auto uvs = read_vertices(&file, stages[0], &mesh);
   if (!has_faces) return mesh;
   const PlyElement& element = file.elements()[face];
   const std::size_t texcoord = element.find("texcoord");
   const bool has_texcoord =
       texcoord < element.properties.size() && element.properties[texcoord].count_type;
   bool all_have_texcoords = has_texcoord;
-  file.go_to(face, progress);
+  file.go_to(face, run);
   while (file.rows_left() > 0) {
-    report_rows(file, element.count, progress.part(0.5, 1.0));
+    report_rows(file, element.count, stages[1]);
     file.read_row();
     const std::span<const double> corners = file.list(list);
     for (const double index : corners) {
@@ -156,11 +156,11 @@ PlyMesh mesh_of(PlyFile file, const Progress& progress) {
   return mesh;
 }
 
-std::vector<std::array<std::int64_t, 3>> faces_of(PlyFile file, const Progress& progress) {
+std::vector<std::array<std::int64_t, 3>> faces_of(PlyFile file, const Run& run) {
   if (file.find("face") == file.elements().size()) return {};
-  const PlyMesh mesh = mesh_of(std::move(file), progress.part(0.0, 0.9));
-  auto triangles =
-      triangulate_polygons(mesh.positions, mesh.corners, mesh.sizes, progress.part(0.9, 1.0));
+  const Stages stages(run, {9, 1});
+  const PlyMesh mesh = mesh_of(std::move(file), stages[0]);
+  auto triangles = triangulate_polygons(mesh.positions, mesh.corners, mesh.sizes, stages[1]);
   for (auto& corners : triangles) {
     for (std::int64_t& corner : corners) corner = mesh.corners[static_cast<std::size_t>(corner)];
   }
@@ -169,26 +169,24 @@ std::vector<std::array<std::int64_t, 3>> faces_of(PlyFile file, const Progress& 
 
 }  // namespace
 
-std::optional<RangeGrid> read_range_grid(const std::string& path, const Progress& progress) {
-  return range_grid_of(PlyFile(ByteReader(path)), progress);
+std::optional<RangeGrid> read_range_grid(const std::string& path, const Run& run) {
+  return range_grid_of(PlyFile(ByteReader(path)), run);
 }
 
-std::optional<RangeGrid> read_range_grid(const UnpackedFile& file, const Progress& progress) {
-  return range_grid_of(PlyFile(ByteReader(file.file())), progress);
+std::optional<RangeGrid> read_range_grid(const UnpackedFile& file, const Run& run) {
+  return range_grid_of(PlyFile(ByteReader(file.file())), run);
 }
 
-PlyMesh read_ply_mesh(const std::string& path, const Progress& progress) {
-  return mesh_of(PlyFile(ByteReader(path)), progress);
+PlyMesh read_ply_mesh(const std::string& path, const Run& run) {
+  return mesh_of(PlyFile(ByteReader(path)), run);
 }
 
-std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path,
-                                                    const Progress& progress) {
-  return faces_of(PlyFile(ByteReader(path)), progress);
+std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path, const Run& run) {
+  return faces_of(PlyFile(ByteReader(path)), run);
 }
 
-std::vector<std::array<std::int64_t, 3>> read_faces(const UnpackedFile& file,
-                                                    const Progress& progress) {
-  return faces_of(PlyFile(ByteReader(file.file())), progress);
+std::vector<std::array<std::int64_t, 3>> read_faces(const UnpackedFile& file, const Run& run) {
+  return faces_of(PlyFile(ByteReader(file.file())), run);
 }
 
 }  // namespace prefilter

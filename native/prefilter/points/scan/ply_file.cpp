@@ -169,12 +169,12 @@ void PlyFile::check_size() {
   }
 }
 
-void PlyFile::go_to(std::size_t element, const Progress& progress) {
+void PlyFile::go_to(std::size_t element, const Run& run) {
   while (element_starts_.size() <= element) {
     element_ = element_starts_.size() - 1;
     row_ = 0;
     text_.go_to(element_starts_.back());
-    skip_rows(progress);
+    skip_rows(run);
     element_starts_.push_back(text_.place());
   }
   element_ = element;
@@ -184,7 +184,7 @@ void PlyFile::go_to(std::size_t element, const Progress& progress) {
   list_ends_.assign(elements_[element].properties.size(), 0);
 }
 
-void PlyFile::skip_rows(const Progress& progress) {
+void PlyFile::skip_rows(const Run& run) {
   const PlyElement& element = elements_[element_];
   if (element.properties.empty()) return;
   if (!is_text_ && !element.has_lists()) {
@@ -194,7 +194,7 @@ void PlyFile::skip_rows(const Progress& progress) {
   scalars_.assign(element.properties.size(), 0.0);
   list_ends_.assign(element.properties.size(), 0);
   is_skipping_ = true;
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   while (rows_left() > 0) {
     cancel_check.step();
     read_row();

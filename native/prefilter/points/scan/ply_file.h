@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "prefilter/base/io/text_reader.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/points/scan/point_fields.h"
 
 namespace prefilter {
@@ -52,7 +52,7 @@ class PlyFile {
 
   /// Moves to the first row of an element. May have to read preceding rows, which `progress` can
   /// cancel.
-  void go_to(std::size_t element, const Progress& progress = {});
+  void go_to(std::size_t element, const Run& run = {});
   /// Reads the next row of the element, which must exist.
   void read_row();
   /// Values of the current row by property index; lists have 0.
@@ -75,7 +75,7 @@ class PlyFile {
   void read_text_row(const PlyElement& element);
   void read_binary_row(const PlyElement& element);
   const std::byte* next_bytes(std::size_t count);
-  void skip_rows(const Progress& progress);
+  void skip_rows(const Run& run);
   void check_size();
 
   TextReader text_;

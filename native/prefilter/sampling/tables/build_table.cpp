@@ -80,9 +80,8 @@ SamplingTable build_sampling_table(const BuildTableOptions& options) {
     }
   }
   std::vector<FittedSet> sets(subdomains.size());
-  parallel_for(static_cast<std::int64_t>(subdomains.size()), options.threads,
-               options.progress.part(0.0, options.certify ? kSearchProgress : 1.0),
-               [&](std::int64_t i) {
+  parallel_for(static_cast<std::int64_t>(subdomains.size()),
+               options.run.part(0.0, options.certify ? kSearchProgress : 1.0), [&](std::int64_t i) {
                  const auto [number, index] = subdomains[i];
                  TableSection& section = table.sections[number];
                  const SubdomainSystem system(shape, section, index);
@@ -91,7 +90,7 @@ SamplingTable build_sampling_table(const BuildTableOptions& options) {
                                  std::to_string(system.candidates()) + " candidates only");
                  }
                  const int texels = std::min(shape.texels, system.candidates());
-                 sets[i] = find_set(system, texels, Progress());
+                 sets[i] = find_set(system, texels, Run());
                  store(system, sets[i], shape, index, &section);
                });
   if (!options.certify) return table;
@@ -101,10 +100,9 @@ SamplingTable build_sampling_table(const BuildTableOptions& options) {
     TableSection& section = table.sections[number];
     const SubdomainSystem system(shape, section, index);
     const auto done = static_cast<double>(i);
-    const Progress progress =
-        options.progress.part(kSearchProgress, 1.0).part(done / count, (done + 1.0) / count);
-    const CertifiedSet certified = certify_set(
-        system, sets[i], {kMaxCertifyWork / system.candidates(), progress, options.threads});
+    const Run run = options.run.part(kSearchProgress, 1.0).part(done / count, (done + 1.0) / count);
+    const CertifiedSet certified =
+        certify_set(system, sets[i], {kMaxCertifyWork / system.candidates(), run});
     store(system, certified.set, shape, index, &section);
     section.gaps.push_back(certified.gap);
   }

@@ -88,8 +88,7 @@ class Rows {
 
 // Cholesky factor of the candidates' products plus `ridge` on the diagonal: the lower triangle, by
 // rows.
-std::vector<double> cholesky_factor(const SubdomainSystem& system, double ridge,
-                                    const Progress& progress) {
+std::vector<double> cholesky_factor(const SubdomainSystem& system, double ridge, const Run& run) {
   const auto count = static_cast<std::size_t>(system.candidates());
   std::vector<double> factor(count * count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -98,7 +97,7 @@ std::vector<double> cholesky_factor(const SubdomainSystem& system, double ridge,
   }
   std::vector<double> column(count);
   for (std::size_t k = 0; k < count; ++k) {
-    progress.report(0.0);
+    run.report(0.0);
     const double pivot = std::sqrt(factor[k * count + k]);
     factor[k * count + k] = pivot;
     for (std::size_t i = k + 1; i < count; ++i) {
@@ -117,11 +116,11 @@ std::vector<double> cholesky_factor(const SubdomainSystem& system, double ridge,
 
 // Inverts a matrix from its Cholesky factor: inverts the factor, then multiplies its columns.
 std::vector<double> inverse_of_factor(const std::vector<double>& factor, std::size_t count,
-                                      const Progress& progress) {
+                                      const Run& run) {
   std::vector<double> factor_inverse(count * count);
   std::vector<double> inverse(count * count);
   for (std::size_t i = 0; i < count; ++i) {
-    progress.report(0.0);
+    run.report(0.0);
     double* const row = factor_inverse.data() + i * count;
     row[i] = 1.0;
     for (std::size_t k = 0; k < i; ++k) {
@@ -146,7 +145,7 @@ std::vector<double> inverse_of_factor(const std::vector<double>& factor, std::si
 // Inverse of all candidates' products, with the sum of the weights fixed, and the weights of all
 // candidates.
 struct AllTexels {
-  AllTexels(const SubdomainSystem& system, const Progress& progress);
+  AllTexels(const SubdomainSystem& system, const Run& run);
 
   const double* inverse_of(int i) const { return inverse.data() + i * weights.count; }
 
@@ -161,14 +160,14 @@ struct AllTexels {
                    const std::vector<double>& of_ones, double sum_of_ones);
 };
 
-AllTexels::AllTexels(const SubdomainSystem& system, const Progress& progress) {
+AllTexels::AllTexels(const SubdomainSystem& system, const Run& run) {
   const auto count = static_cast<std::size_t>(system.candidates());
   const auto polynomials = static_cast<std::size_t>(system.polynomials());
   double trace = 0.0;
   for (std::size_t i = 0; i < count; ++i) trace += system.products_of(static_cast<int>(i))[i];
   const double ridge = kRidge * trace / static_cast<double>(count);
   slack = ridge * system.unit * system.unit * kMaxRmsWeight * kMaxRmsWeight;
-  inverse = inverse_of_factor(cholesky_factor(system, ridge, progress), count, progress);
+  inverse = inverse_of_factor(cholesky_factor(system, ridge, run), count, run);
 
   std::vector<double> of_ones(count);
   double sum_of_ones = 0.0;
@@ -418,7 +417,7 @@ CertifiedSet certify_set(const SubdomainSystem& system, const FittedSet& start,
   const double no_error = kNoError * system.filter_square;
   if (static_cast<int>(size) == system.candidates() || start.error <= no_error) return result;
 
-  const AllTexels all(system, options.progress);
+  const AllTexels all(system, options.run);
   std::vector<int> best = start.members;
   double best_error = start.error;
   const auto order = [](const Task& a, const Task& b) { return a.bound < b.bound; };
@@ -435,7 +434,7 @@ CertifiedSet certify_set(const SubdomainSystem& system, const FittedSet& start,
     std::vector<Outcome> outcomes(tasks.size());
     const double done = static_cast<double>(nodes) / static_cast<double>(options.nodes);
     parallel_for(
-        static_cast<std::int64_t>(tasks.size()), options.threads, options.progress.part(done, done),
+        static_cast<std::int64_t>(tasks.size()), options.run.part(done, done),
         [&](std::int64_t i) { outcomes[i] = Search(system, all, size, best_error).run(tasks[i]); });
     for (Outcome& outcome : outcomes) {
       if (!outcome.best.empty() && outcome.best_error < best_error) {
@@ -451,7 +450,7 @@ CertifiedSet certify_set(const SubdomainSystem& system, const FittedSet& start,
     const double bound = open.begin()->bound - all.slack * static_cast<double>(size);
     result.gap = std::clamp(1.0 - bound / best_error, 0.0, 1.0);
   }
-  options.progress.report(1.0);
+  options.run.report(1.0);
   return result;
 }
 

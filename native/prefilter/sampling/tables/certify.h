@@ -5,15 +5,14 @@
 
 #include <cstdint>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/sampling/tables/subdomain_system.h"
 
 namespace prefilter {
 
 struct CertifyOptions {
   std::int64_t nodes = 0;  // limit of nodes in the search tree, after which the proof is abandoned
-  Progress progress;
-  int threads = 0;
+  Run run;
 };
 
 struct CertifiedSet {

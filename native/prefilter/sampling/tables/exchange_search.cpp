@@ -238,7 +238,7 @@ std::vector<int> drawn(std::vector<int> pool, std::size_t count, std::mt19937& r
 
 }  // namespace
 
-FittedSet find_set(const SubdomainSystem& system, int texels, const Progress& progress) {
+FittedSet find_set(const SubdomainSystem& system, int texels, const Run& run) {
   const auto count = static_cast<std::size_t>(texels);
   const std::vector<int> order = by_own_error(system);
   std::mt19937 random(1);
@@ -246,7 +246,7 @@ FittedSet find_set(const SubdomainSystem& system, int texels, const Progress& pr
   std::vector<int> best;
   double best_error = std::numeric_limits<double>::infinity();
   for (int start = 0; start <= kRandomStarts; ++start) {
-    progress.report(static_cast<double>(start) / (kRandomStarts + 1));
+    run.report(static_cast<double>(start) / (kRandomStarts + 1));
     std::vector<int> pool = order;
     pool.resize(
         std::min(pool.size(), count * kPoolSizesPerTexel[start % kPoolSizesPerTexel.size()]));

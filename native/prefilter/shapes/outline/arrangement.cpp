@@ -115,8 +115,7 @@ std::size_t Arrangement::max_steps(ArrangementEffort effort) const {
   return kMinSteps + kStepsPerPiece * pieces;
 }
 
-CutOutcome Arrangement::collect_sites(std::size_t max_steps, const Progress& progress,
-                                      SiteList* list) const {
+CutOutcome Arrangement::collect_sites(std::size_t max_steps, const Run& run, SiteList* list) const {
   std::vector<std::pair<PieceId, PieceId>> pairs;
   if (!tree_.append_pairs(max_steps, &pairs)) return CutOutcome::kTooMany;
   std::vector<CurveIntersection> intersections;
@@ -124,7 +123,7 @@ CutOutcome Arrangement::collect_sites(std::size_t max_steps, const Progress& pro
   constexpr std::size_t kPairsPerReport = 1 << 12;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (i % kPairsPerReport == 0) {
-      progress.report(static_cast<double>(i) / static_cast<double>(pairs.size()));
+      run.report(static_cast<double>(i) / static_cast<double>(pairs.size()));
     }
     auto [a, b] = pairs[i];
     if (!follows(a, b) && follows(b, a)) std::swap(a, b);
@@ -209,11 +208,11 @@ void Arrangement::merge_sites(CancelCheck* cancel_check, SiteList* list) {
   }
 }
 
-CutOutcome Arrangement::cut(ArrangementEffort effort, const Progress& progress) {
+CutOutcome Arrangement::cut(ArrangementEffort effort, const Run& run) {
   SiteList list(contours_);
-  const CutOutcome outcome = collect_sites(max_steps(effort), progress, &list);
+  const CutOutcome outcome = collect_sites(max_steps(effort), run, &list);
   if (outcome != CutOutcome::kCut) return outcome;
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   merge_sites(&cancel_check, &list);
   std::sort(cuts_.begin(), cuts_.end(), [&](const Cut& a, const Cut& b) {
     cancel_check.step();

@@ -53,7 +53,7 @@ class Arrangement {
   Arrangement& operator=(const Arrangement&) = delete;
 
   /// Cuts the contours at their intersections, within the limits of `effort`.
-  CutOutcome cut(ArrangementEffort effort, const Progress& progress = {});
+  CutOutcome cut(ArrangementEffort effort, const Run& run = {});
   /// Largest number of steps for the work after `cut`.
   std::size_t max_steps(ArrangementEffort effort) const;
 
@@ -90,7 +90,7 @@ class Arrangement {
 
   CurvePiece curve_piece(const MonotonePiece& piece, std::uint32_t contour) const;
   bool follows(const PieceId& a, const PieceId& b) const;
-  CutOutcome collect_sites(std::size_t max_steps, const Progress& progress, SiteList* list) const;
+  CutOutcome collect_sites(std::size_t max_steps, const Run& run, SiteList* list) const;
   Site site_at(const PieceId& id, const MonotonePiece& piece, double parameter,
                const Point2& point) const;
   void merge_sites(CancelCheck* cancel_check, SiteList* list);

@@ -21,10 +21,10 @@ namespace {
 enum class Outcome : std::uint8_t { kUnchanged, kTraced, kUnclear, kTooMany };
 
 Outcome resolve_exactly(const Outline& outline, FillRule rule, double precision,
-                        ArrangementEffort effort, const Progress& progress, Outline* result) {
+                        ArrangementEffort effort, const Run& run, Outline* result) {
   const std::array<const Outline*, 1> outlines = {&outline};
   Arrangement arrangement(outlines, precision);
-  const CutOutcome cut = arrangement.cut(effort, progress.part(0.0, 0.5));
+  const CutOutcome cut = arrangement.cut(effort, run.part(0.0, 0.5));
   if (cut != CutOutcome::kCut) {
     return cut == CutOutcome::kUnclear ? Outcome::kUnclear : Outcome::kTooMany;
   }
@@ -46,7 +46,7 @@ Outcome resolve_exactly(const Outline& outline, FillRule rule, double precision,
   constexpr std::size_t kWindingsPerStep = 128;
   const std::size_t count = arrangement.chain_count();
   for (std::size_t begin = 0; begin < count; begin += kChainsPerReport) {
-    progress.report(0.5 + 0.5 * static_cast<double>(begin) / static_cast<double>(count));
+    run.report(0.5 + 0.5 * static_cast<double>(begin) / static_cast<double>(count));
     arrangement.visit(begin, std::min(begin + kChainsPerReport, count), visitor);
     if (steps / kWindingsPerStep > arrangement.max_steps(effort)) return Outcome::kTooMany;
   }
@@ -79,10 +79,10 @@ bool resolve_convex(const Outline& outline, FillRule rule, std::optional<Outline
 }
 
 bool resolve_by_arrangement(const Outline& outline, FillRule rule, ArrangementEffort effort,
-                            const Progress& progress, std::optional<Outline>* changed) {
+                            const Run& run, std::optional<Outline>* changed) {
   for (const double precision : kArrangementPrecisions) {
     Outline result;
-    switch (resolve_exactly(outline, rule, precision, effort, progress, &result)) {
+    switch (resolve_exactly(outline, rule, precision, effort, run, &result)) {
       case Outcome::kUnchanged:
         return true;
       case Outcome::kTraced:
@@ -99,18 +99,18 @@ bool resolve_by_arrangement(const Outline& outline, FillRule rule, ArrangementEf
 
 }  // namespace
 
-bool resolve_within_budget(const Outline& outline, FillRule rule, const Progress& progress,
+bool resolve_within_budget(const Outline& outline, FillRule rule, const Run& run,
                            std::optional<Outline>* changed) {
   changed->reset();
   return resolve_convex(outline, rule, changed) ||
-         resolve_by_arrangement(outline, rule, ArrangementEffort::kBounded, progress, changed);
+         resolve_by_arrangement(outline, rule, ArrangementEffort::kBounded, run, changed);
 }
 
 std::optional<Outline> resolved(const Outline& outline, FillRule rule, double tolerance,
-                                const Progress& progress) {
+                                const Run& run) {
   std::optional<Outline> changed;
   if (resolve_convex(outline, rule, &changed) ||
-      resolve_by_arrangement(outline, rule, ArrangementEffort::kUnbounded, progress, &changed)) {
+      resolve_by_arrangement(outline, rule, ArrangementEffort::kUnbounded, run, &changed)) {
     return changed;
   }
   return combine_polygons(flattened(outline, tolerance), rule, {}, rule, OutlineOperation::kUnion);

@@ -59,38 +59,36 @@ std::size_t steps_of(const std::vector<Visibility>& visibilities) {
 // threads exceeds `max_steps` steps; whether it does is independent of their order.
 std::optional<std::vector<VisibilityEdge>> find_edges(const Arrangement& arrangement,
                                                       std::span<const CoveringLayer> layers,
-                                                      std::size_t max_steps, int threads,
-                                                      const Progress& progress) {
+                                                      std::size_t max_steps, const Run& run) {
   std::atomic<std::size_t> steps = 0;
   const auto count = static_cast<std::int64_t>(arrangement.chain_count());
   std::vector<std::vector<VisibilityEdge>> parts(range_count(count, kChainsPerRange));
-  parallel_ranges(
-      count, kChainsPerRange, threads, progress, [&](std::int64_t begin, std::int64_t end) {
-        std::vector<VisibilityEdge>& edges = parts[begin / kChainsPerRange];
-        std::vector<std::uint32_t> touched;
-        std::vector<Visibility> on_right;
-        std::vector<Visibility> on_left;
-        const auto append = [&](const std::vector<Visibility>& here,
-                                const std::vector<Visibility>& there, std::uint32_t chain,
-                                bool reversed) {
-          for (const Visibility& visibility : here) {
-            if (std::find(there.begin(), there.end(), visibility) == there.end()) {
-              edges.push_back({visibility, {chain, reversed}});
-            }
-          }
-        };
-        if (steps > max_steps) return;
-        arrangement.visit(
-            begin, end,
-            [&](std::uint32_t chain, const LayerWindings& right, const LayerWindings& left) {
-              if (steps > max_steps) return;
-              find_visibilities(layers, right, &touched, &on_right);
-              find_visibilities(layers, left, &touched, &on_left);
-              steps += touched.size() + steps_of(on_right) + steps_of(on_left);
-              append(on_left, on_right, chain, false);
-              append(on_right, on_left, chain, true);
-            });
-      });
+  parallel_ranges(count, kChainsPerRange, run, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<VisibilityEdge>& edges = parts[begin / kChainsPerRange];
+    std::vector<std::uint32_t> touched;
+    std::vector<Visibility> on_right;
+    std::vector<Visibility> on_left;
+    const auto append = [&](const std::vector<Visibility>& here,
+                            const std::vector<Visibility>& there, std::uint32_t chain,
+                            bool reversed) {
+      for (const Visibility& visibility : here) {
+        if (std::find(there.begin(), there.end(), visibility) == there.end()) {
+          edges.push_back({visibility, {chain, reversed}});
+        }
+      }
+    };
+    if (steps > max_steps) return;
+    arrangement.visit(
+        begin, end,
+        [&](std::uint32_t chain, const LayerWindings& right, const LayerWindings& left) {
+          if (steps > max_steps) return;
+          find_visibilities(layers, right, &touched, &on_right);
+          find_visibilities(layers, left, &touched, &on_left);
+          steps += touched.size() + steps_of(on_right) + steps_of(on_left);
+          append(on_left, on_right, chain, false);
+          append(on_right, on_left, chain, true);
+        });
+  });
   if (steps > max_steps) return std::nullopt;
   std::vector<VisibilityEdge> all;
   for (const auto& edges : parts) all.insert(all.end(), edges.begin(), edges.end());
@@ -103,18 +101,18 @@ std::optional<std::vector<VisibilityEdge>> find_edges(const Arrangement& arrange
 }  // namespace
 
 std::optional<std::vector<VisiblePiece>> visible_pieces(std::span<const CoveringLayer> layers,
-                                                        ArrangementEffort effort, int threads,
-                                                        const Progress& progress) {
+                                                        ArrangementEffort effort, const Run& run) {
   std::vector<const Outline*> outlines;
   for (const CoveringLayer& layer : layers) outlines.push_back(layer.outline);
   Arrangement arrangement(outlines, kArrangementPrecisions[0]);
-  if (arrangement.cut(effort, progress.part(0.0, 0.4)) != CutOutcome::kCut) return std::nullopt;
+  const Stages stages(run, {2, 2, 1});
+  if (arrangement.cut(effort, stages[0]) != CutOutcome::kCut) return std::nullopt;
   constexpr std::size_t kComparisonsPerStep = 8;
   const std::size_t max_steps = arrangement.max_steps(effort);
   const auto edges = find_edges(
       arrangement, layers,
       max_steps > SIZE_MAX / kComparisonsPerStep ? max_steps : kComparisonsPerStep * max_steps,
-      threads, progress.part(0.4, 0.8));
+      stages[1]);
   if (!edges) return std::nullopt;
   std::vector<std::size_t> starts;  // first edge of each piece, and the number of edges
   for (std::size_t i = 0; i < edges->size(); ++i) {
@@ -123,19 +121,16 @@ std::optional<std::vector<VisiblePiece>> visible_pieces(std::span<const Covering
   std::vector<VisiblePiece> pieces(starts.size());
   starts.push_back(edges->size());
   std::atomic<bool> all_traced = true;
-  parallel_for(static_cast<std::int64_t>(pieces.size()), threads, progress.part(0.8, 1.0),
-               [&](std::int64_t index) {
-                 const auto i = static_cast<std::size_t>(index);
-                 const auto own = std::span(*edges).subspan(starts[i], starts[i + 1] - starts[i]);
-                 const Visibility& visibility = own.front().visibility;
-                 pieces[i] = {visibility.layer,
-                              {visibility.overlays.rbegin(), visibility.overlays.rend()},
-                              {}};
-                 std::vector<BoundaryChain> boundary;
-                 for (const VisibilityEdge& edge : own) boundary.push_back(edge.chain);
-                 if (!arrangement.trace(boundary, &pieces[i].outline)) all_traced = false;
-               });
-  progress.report(1.0);
+  parallel_for(static_cast<std::int64_t>(pieces.size()), stages[2], [&](std::int64_t index) {
+    const auto i = static_cast<std::size_t>(index);
+    const auto own = std::span(*edges).subspan(starts[i], starts[i + 1] - starts[i]);
+    const Visibility& visibility = own.front().visibility;
+    pieces[i] = {visibility.layer, {visibility.overlays.rbegin(), visibility.overlays.rend()}, {}};
+    std::vector<BoundaryChain> boundary;
+    for (const VisibilityEdge& edge : own) boundary.push_back(edge.chain);
+    if (!arrangement.trace(boundary, &pieces[i].outline)) all_traced = false;
+  });
+  run.report(1.0);
   if (!all_traced) return std::nullopt;
   return pieces;
 }

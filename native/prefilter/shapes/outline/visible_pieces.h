@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "prefilter/base/outline.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/shapes/outline/arrangement.h"
 
 namespace prefilter {
@@ -37,7 +37,7 @@ struct VisiblePiece {
 ///
 /// Nothing if rounding makes the intersections ambiguous, or if the work exceeds `effort`.
 std::optional<std::vector<VisiblePiece>> visible_pieces(std::span<const CoveringLayer> layers,
-                                                        ArrangementEffort effort, int threads = 0,
-                                                        const Progress& progress = {});
+                                                        ArrangementEffort effort,
+                                                        const Run& run = {});
 
 }  // namespace prefilter

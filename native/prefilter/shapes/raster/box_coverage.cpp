@@ -132,8 +132,8 @@ void BoxRasterizer::draw(const Outline& outline, const ByteRows& target) {
   check_points(are_all_near);
 }
 
-void rasterize_coverage(const Outline& outline, FillRule rule, const ByteRows& target, int threads,
-                        const Progress& progress) {
+void rasterize_coverage(const Outline& outline, FillRule rule, const ByteRows& target,
+                        const Run& run) {
   check_size(target);
   for (const Point2& point : outline.points()) check_points(is_near(point, kMaxPixelCoordinate));
   const std::optional<Outline> simple = resolved(outline, rule);
@@ -141,13 +141,12 @@ void rasterize_coverage(const Outline& outline, FillRule rule, const ByteRows& t
   edges.add(simple ? *simple : outline);
   constexpr int kBandValues = 1 << 18;
   const int rows = std::max(16, kBandValues / target.width);
-  parallel_ranges(target.height, rows, threads, progress,
-                  [&](std::int64_t begin, std::int64_t end) {
-                    BoxCoverage coverage;
-                    coverage.begin(target.width, static_cast<int>(begin), static_cast<int>(end));
-                    coverage.add(edges);
-                    write_bytes(&coverage, target);
-                  });
+  parallel_ranges(target.height, rows, run, [&](std::int64_t begin, std::int64_t end) {
+    BoxCoverage coverage;
+    coverage.begin(target.width, static_cast<int>(begin), static_cast<int>(end));
+    coverage.add(edges);
+    write_bytes(&coverage, target);
+  });
 }
 
 }  // namespace prefilter

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "prefilter/base/outline.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/shapes/raster/box_curves.h"
 #include "prefilter/shapes/raster/box_lines.h"
 #include "prefilter/shapes/raster/difference_rows.h"
@@ -36,9 +36,9 @@ class BoxCoverage {
   void add(const EdgeList& edges);
 
   /// See DifferenceRows::take().
-  template <typename Block, typename Run>
-  void take(const Block& block, const Run& run) {
-    rows_.take(block, run);
+  template <typename Block, typename UseRun>
+  void take(const Block& block, const UseRun& use_run) {
+    rows_.take(block, use_run);
   }
 
  private:
@@ -73,6 +73,6 @@ class BoxRasterizer {
 
 /// Draws the coverage of any outline, on several threads. See BoxRasterizer::draw.
 void rasterize_coverage(const Outline& outline, FillRule rule, const ByteRows& target,
-                        int threads = 0, const Progress& progress = {});
+                        const Run& run = {});
 
 }  // namespace prefilter

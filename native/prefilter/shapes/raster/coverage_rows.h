@@ -41,10 +41,10 @@ class CoverageRows {
   }
   bool is_changed(int row) const { return is_row_changed_[row] != 0; }
 
-  /// Calls one(x, coverage) for pixels in changed blocks, and run(begin, end, coverage) for runs of
-  /// equal coverage, from left to right. Resets the row to 0.
-  template <typename One, typename Run>
-  void take(int row, const One& one, const Run& run);
+  /// Calls one(x, coverage) for pixels in changed blocks, and use_run(begin, end, coverage) for
+  /// runs of equal coverage, from left to right. Resets the row to 0.
+  template <typename One, typename UseRun>
+  void take(int row, const One& one, const UseRun& use_run);
 
  private:
   static constexpr int kBlock = 16;
@@ -58,14 +58,14 @@ class CoverageRows {
   std::vector<std::uint8_t> is_row_changed_;
 };
 
-template <typename One, typename Run>
-void CoverageRows::take(int row, const One& one, const Run& run) {
+template <typename One, typename UseRun>
+void CoverageRows::take(int row, const One& one, const UseRun& use_run) {
   std::int64_t* steps = steps_.data() + stride_ * row;
   std::uint8_t* changed = is_changed_.data() + static_cast<std::size_t>(blocks_) * row;
   std::int64_t sum = 0;
   int run_begin = 0;
   const auto end_run = [&](int end) {
-    if (end > run_begin && sum != 0) run(run_begin, end, static_cast<double>(sum) * kUnit);
+    if (end > run_begin && sum != 0) use_run(run_begin, end, static_cast<double>(sum) * kUnit);
   };
   for (int block = 0; block < blocks_; ++block) {
     if (changed[block] == 0) continue;

@@ -83,9 +83,10 @@ class DifferenceRows {
   }
 
   /// Calls for each row, in order, block(row, x, count, values) with 16 values of which `count` are
-  /// pixels, and run(row, begin, end, value) for nonzero runs between blocks. Resets the rows to 0.
-  template <typename Block, typename Run>
-  void take(const Block& block, const Run& run);
+  /// pixels, and use_run(row, begin, end, value) for nonzero runs between blocks. Resets the rows
+  /// to 0.
+  template <typename Block, typename UseRun>
+  void take(const Block& block, const UseRun& use_run);
 
  private:
   static constexpr int kBlockBits = 4;
@@ -103,8 +104,8 @@ class DifferenceRows {
   std::vector<std::uint32_t> left_;  // differences between rows, at column 0
 };
 
-template <typename Block, typename Run>
-void DifferenceRows::take(const Block& block, const Run& run) {
+template <typename Block, typename UseRun>
+void DifferenceRows::take(const Block& block, const UseRun& use_run) {
   std::uint32_t before = 0;
   for (int row = first_row_; row < end_row_; ++row) {
     before += left_[row - first_row_];
@@ -130,7 +131,7 @@ void DifferenceRows::take(const Block& block, const Run& run) {
           continue;
         }
         const int begin = std::min(at, width_);
-        if (sum != 0 && begin > done) run(row, done, begin, sum);
+        if (sum != 0 && begin > done) use_run(row, done, begin, sum);
         done = std::min(at + kBlock, width_);
         alignas(16) std::uint32_t sums[kBlock];
         IntFour last = IntFour{} + sum;
@@ -148,7 +149,7 @@ void DifferenceRows::take(const Block& block, const Run& run) {
         if (done > begin) block(row, begin, done - begin, sums);
       }
     }
-    if (sum != 0 && width_ > done) run(row, done, width_, sum);
+    if (sum != 0 && width_ > done) use_run(row, done, width_, sum);
   }
   left_[end_row_ - first_row_] = 0;
 }

@@ -10,16 +10,16 @@ namespace prefilter {
 void EdgeList::add(const Outline& outline, bool closes) {
   const std::size_t count = outline.segments().size();
   for (std::size_t first = 0; first < count; first += kRunLength) {
-    Run run{&outline, first, std::min(first + kRunLength, count), HUGE_VAL, -HUGE_VAL};
-    for (std::size_t i = run.first; i < run.end; ++i) {
+    SegmentRange range{&outline, first, std::min(first + kRunLength, count), HUGE_VAL, -HUGE_VAL};
+    for (std::size_t i = range.first; i < range.end; ++i) {
       for (const Point2& point : outline.controls(outline.segments()[i])) {
-        run.low = std::min(run.low, point.y);
-        run.high = std::max(run.high, point.y);
+        range.low = std::min(range.low, point.y);
+        range.high = std::max(range.high, point.y);
       }
     }
-    runs_.push_back(run);
-    low_ = std::min(low_, run.low);
-    high_ = std::max(high_, run.high);
+    runs_.push_back(range);
+    low_ = std::min(low_, range.low);
+    high_ = std::max(high_, range.high);
   }
   if (!closes) return;
   for (std::size_t contour = 0; contour < outline.contour_count(); ++contour) {

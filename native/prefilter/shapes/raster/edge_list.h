@@ -40,7 +40,7 @@ class EdgeList {
   void for_segments_between(double low, double high, const Use& use) const;
 
  private:
-  struct Run {
+  struct SegmentRange {
     const Outline* outline = nullptr;
     std::size_t first = 0;
     std::size_t end = 0;
@@ -53,7 +53,7 @@ class EdgeList {
   };
   static constexpr std::size_t kRunLength = 64;
 
-  std::vector<Run> runs_;
+  std::vector<SegmentRange> runs_;
   std::vector<Line> closing_;
   double low_ = HUGE_VAL;
   double high_ = -HUGE_VAL;
@@ -85,11 +85,11 @@ void EdgeList::for_segments_between(double low, double high, const Use& use) con
     if (segment_high < low || segment_low > high) return;
     use(controls, weight);
   };
-  for (const Run& run : runs_) {
-    if (run.high < low || run.low > high) continue;
-    for (std::size_t i = run.first; i < run.end; ++i) {
-      const Outline::Segment& segment = run.outline->segments()[i];
-      use_segment(run.outline->controls(segment), segment.weight);
+  for (const SegmentRange& range : runs_) {
+    if (range.high < low || range.low > high) continue;
+    for (std::size_t i = range.first; i < range.end; ++i) {
+      const Outline::Segment& segment = range.outline->segments()[i];
+      use_segment(range.outline->controls(segment), segment.weight);
     }
   }
   for (const Line& line : closing_) {

@@ -25,7 +25,7 @@ struct RowCrossing {
 };
 
 // Pixels [begin, end) of the rows from `first_row` on.
-struct Run {
+struct PixelRun {
   int begin = 0;
   int end = 0;
   int first_row = 0;
@@ -58,7 +58,7 @@ void append_crossings(const MonotoneCurve& piece, bool backward,
   }
 }
 
-void append_box(const Run& run, int end_row, Outline* outline) {
+void append_box(const PixelRun& run, int end_row, Outline* outline) {
   const double left = run.begin;
   const double right = run.end;
   outline->move_to({left, static_cast<double>(run.first_row)});
@@ -75,8 +75,8 @@ class RunJoiner {
 
   void add(int row, int begin, int end) {
     if (row != row_) next_row(row);
-    Run run{begin, end, row};
-    const auto same = std::find_if(before_.begin(), before_.end(), [&](const Run& each) {
+    PixelRun run{begin, end, row};
+    const auto same = std::find_if(before_.begin(), before_.end(), [&](const PixelRun& each) {
       return each.begin == begin && each.end == end;
     });
     if (same != before_.end()) {
@@ -89,11 +89,11 @@ class RunJoiner {
 
  private:
   void next_row(int row) {
-    for (const Run& run : before_) append_box(run, row_, outline_);
+    for (const PixelRun& run : before_) append_box(run, row_, outline_);
     before_ = std::move(runs_);
     runs_.clear();
     if (row != row_ + 1) {
-      for (const Run& run : before_) append_box(run, row_ + 1, outline_);
+      for (const PixelRun& run : before_) append_box(run, row_ + 1, outline_);
       before_.clear();
     }
     row_ = row;
@@ -101,8 +101,8 @@ class RunJoiner {
 
   Outline* outline_;
   int row_ = 0;
-  std::vector<Run> before_;  // open runs of the previous row
-  std::vector<Run> runs_;
+  std::vector<PixelRun> before_;  // open runs of the previous row
+  std::vector<PixelRun> runs_;
 };
 
 }  // namespace

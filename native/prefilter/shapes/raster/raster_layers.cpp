@@ -128,7 +128,7 @@ class LayerPlanner {
       : shapes_(shapes), options_(options), resolved_(shapes.size()) {}
 
   // Prepares shapes that cover each other, from index `first` on.
-  void prepare_covered(std::uint32_t first, const Progress& progress) {
+  void prepare_covered(std::uint32_t first, const Run& run) {
     group_shapes(first);
     if (groups_.empty()) return;
     // Cancellation is only seen by the calling thread. So large groups run one after another with
@@ -146,21 +146,20 @@ class LayerPlanner {
     const auto groups = static_cast<double>(groups_.size());
     for (std::size_t i = 0; i < large.size(); ++i) {
       const auto finished = static_cast<double>(i);
-      find_pieces(&groups_[large[i]], options_.threads,
-                  progress.part(finished / groups, (finished + 1.0) / groups));
+      find_pieces(&groups_[large[i]], run.part(finished / groups, (finished + 1.0) / groups));
     }
-    parallel_for(static_cast<std::int64_t>(small.size()), options_.threads,
-                 progress.part(static_cast<double>(large.size()) / groups, 1.0),
-                 [&](std::int64_t i) { find_pieces(&groups_[small[i]], 1, {}); });
+    parallel_for(static_cast<std::int64_t>(small.size()),
+                 run.part(static_cast<double>(large.size()) / groups, 1.0),
+                 [&](std::int64_t i) { find_pieces(&groups_[small[i]], Run(1)); });
   }
 
   // Prepares shapes that are added.
-  void prepare_added(const Progress& progress) {
+  void prepare_added(const Run& run) {
     groups_.resize(shapes_.size());
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) groups_[i].shapes = {i};
     // Only the calling thread reports progress, and a single shape runs on it.
-    const Progress within = shapes_.size() == 1 ? progress : Progress();
-    parallel_for(static_cast<std::int64_t>(shapes_.size()), options_.threads, progress,
+    const Run within = shapes_.size() == 1 ? run : Run();
+    parallel_for(static_cast<std::int64_t>(shapes_.size()), run,
                  [&](std::int64_t i) { resolve_shape(static_cast<std::uint32_t>(i), within); });
   }
 
@@ -258,21 +257,22 @@ class LayerPlanner {
     }
   }
 
-  void resolve_shape(std::uint32_t i, const Progress& progress) {
+  void resolve_shape(std::uint32_t i, const Run& run) {
     const Shape& shape = shapes_[i];
     if (shape.winds_once) return;
     if (options_.method == RasterMethod::kWavelet && is_left_open(shape.outline)) return;
     ResolvedShape& resolved = resolved_[i];
     resolved.was_tried = true;
     resolved.is_clear =
-        resolve_within_budget(shape.outline, shape.fill_rule, progress, &resolved.changed);
+        resolve_within_budget(shape.outline, shape.fill_rule, run, &resolved.changed);
   }
 
-  void find_pieces(Group* group, int threads, const Progress& progress) {
+  void find_pieces(Group* group, const Run& run) {
+    const Stages stages(run, {1, 9});
     if (!group->is_covered) {
       const auto count = static_cast<std::int64_t>(group->shapes.size());
-      const Progress within = count == 1 ? progress : Progress();
-      parallel_for(count, threads, progress.part(0.0, 0.1),
+      const Run within = count == 1 ? run : Run();
+      parallel_for(count, stages[0],
                    [&](std::int64_t i) { resolve_shape(group->shapes[i], within); });
       group->is_covered = count > 1 && !are_disjoint(group->shapes);
     }
@@ -289,8 +289,7 @@ class LayerPlanner {
       layers.push_back({&shapes_[i].outline, shapes_[i].fill_rule,
                         max_transmittance(paint, paint.channels) == 0.0});
     }
-    group->pieces =
-        visible_pieces(layers, ArrangementEffort::kBounded, threads, progress.part(0.1, 1.0));
+    group->pieces = visible_pieces(layers, ArrangementEffort::kBounded, stages[1]);
   }
 
   bool are_disjoint(std::span<const std::uint32_t> indices) const {
@@ -359,12 +358,12 @@ RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& opt
     paints.push_back(shape.paint);
     subtract_background(out.background, &paints.back());
   }
-  const Progress progress = options.progress.part(0.0, kLayersProgressShare);
+  const Run run = options.run.part(0.0, kLayersProgressShare);
   LayerPlanner planner(shapes, options);
   if (covers) {
-    planner.prepare_covered(first, progress);
+    planner.prepare_covered(first, run);
   } else {
-    planner.prepare_added(progress);
+    planner.prepare_added(run);
   }
   planner.add_to(paints, &out);
   return out;

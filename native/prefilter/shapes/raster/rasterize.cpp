@@ -296,8 +296,7 @@ void make_bands(const RasterLayers& job, const CellFilter& filter, const RasterO
   constexpr int kMinRows = 16;
   const int rows = std::clamp(kBandValues / (options.width * job.channels), kMinRows, 256);
   BandRendererPool<N> renderers;
-  parallel_ranges(options.height, rows, options.threads,
-                  options.progress.part(kLayersProgressShare, 1.0),
+  parallel_ranges(options.height, rows, options.run.part(kLayersProgressShare, 1.0),
                   [&](std::int64_t begin, std::int64_t end) {
                     renderers.with_renderer(
                         [&] { return std::make_unique<BandRenderer<N>>(job, filter, pixels); },
@@ -381,8 +380,7 @@ Job job_of(std::span<const Shape> shapes, const RasterOptions& options, double v
 void add_wavelets(RasterLayers* job, const RasterOptions& options, Image* image) {
   const int most = wavelet_depth(options.width, options.height);
   const int depth = options.depth < 0 ? most : options.depth;
-  add_up_wavelets(*job, depth, options.threads, options.progress.part(kLayersProgressShare, 1.0),
-                  image);
+  add_up_wavelets(*job, depth, options.run.part(kLayersProgressShare, 1.0), image);
   if (job->stacks.empty()) return;
   RasterLayers stacks;
   stacks.channels = job->channels;

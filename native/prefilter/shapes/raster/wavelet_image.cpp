@@ -107,12 +107,12 @@ class ImageRows {
     return sums_.data() + static_cast<std::size_t>(row - first_row_) * image_->width * Channels;
   }
 
-  template <typename Run, typename Row>
-  void synthesise(const PlaneHaar& tree, int cell_depth, const Run& run, const Row& in_row) {
+  template <typename UseRun, typename Row>
+  void synthesise(const PlaneHaar& tree, int cell_depth, const UseRun& use_run, const Row& in_row) {
     tree.synthesise(
         cell_depth, first_row_, end_row_,
         [&](int row, int begin, int end, float value) {
-          run(row, begin, std::min(end, image_->width), value);
+          use_run(row, begin, std::min(end, image_->width), value);
         },
         [&](int x, int y, const auto& values) {
           const int count = std::min(kPlaneBrickSide, image_->width - x);
@@ -131,20 +131,19 @@ class ImageRows {
 
 template <int Channels>
 void set_image(std::span<const PlaneHaar> trees, const RasterLayers& job, int cell_depth, int rows,
-               int threads, const Progress& progress, Image* image) {
-  parallel_ranges(
-      image->height, rows, threads, progress, [&](std::int64_t begin, std::int64_t end) {
-        ImageRows<Channels> strip(image, static_cast<int>(begin), static_cast<int>(end));
-        if (trees.size() == 1) {
-          strip.set(trees[0], cell_depth, job.background, job.layers[0].paint.constant);
-          return;
-        }
-        strip.begin_sums(job.background);
-        for (std::size_t i = 0; i < trees.size(); ++i) {
-          strip.add(trees[i], cell_depth, job.layers[i].paint.constant);
-        }
-        strip.end_sums();
-      });
+               const Run& run, Image* image) {
+  parallel_ranges(image->height, rows, run, [&](std::int64_t begin, std::int64_t end) {
+    ImageRows<Channels> strip(image, static_cast<int>(begin), static_cast<int>(end));
+    if (trees.size() == 1) {
+      strip.set(trees[0], cell_depth, job.background, job.layers[0].paint.constant);
+      return;
+    }
+    strip.begin_sums(job.background);
+    for (std::size_t i = 0; i < trees.size(); ++i) {
+      strip.add(trees[i], cell_depth, job.layers[i].paint.constant);
+    }
+    strip.end_sums();
+  });
 }
 
 }  // namespace
@@ -153,8 +152,7 @@ int wavelet_depth(int width, int height) {
   return static_cast<int>(std::bit_width(static_cast<unsigned>(std::max(width, height)) - 1));
 }
 
-void add_up_wavelets(const RasterLayers& job, int depth, int threads, const Progress& progress,
-                     Image* image) {
+void add_up_wavelets(const RasterLayers& job, int depth, const Run& run, Image* image) {
   if (std::max(image->width, image->height) > 1 << PlaneGrid::kMostDepth) {
     throw_invalid("width, height: found " + std::to_string(image->width) + " x " +
                   std::to_string(image->height) + " pixels; the wavelet method takes up to 2^24");
@@ -170,36 +168,36 @@ void add_up_wavelets(const RasterLayers& job, int depth, int threads, const Prog
   const auto strip_count = static_cast<std::size_t>(range_count(grid.height, rows));
   std::vector<std::vector<StripBricks>> strips(job.layers.size());
   for (auto& of_layer : strips) of_layer.resize(strip_count);
-  parallel_ranges(grid.height, rows, threads, progress.part(0.0, 0.6),
-                  [&](std::int64_t begin, std::int64_t end) {
-                    OutlineStrip strip;
-                    const auto first_row = static_cast<int>(begin);
-                    const auto end_row = static_cast<int>(end);
-                    strip.begin(grid, first_row, end_row);
-                    for (std::size_t i = 0; i < job.layers.size(); ++i) {
-                      const EdgeList& edges = job.layers[i].edges;
-                      if (edges.high() < first_row && first_row > 0) continue;
-                      if (edges.low() > end_row && end_row < grid.height) continue;
-                      add_segments(edges, first_row, end_row, grid, &strip);
-                      strips[i][static_cast<std::size_t>(begin / rows)] = strip.take();
-                    }
-                  });
+  const Stages stages(run, {6, 1, 3});
+  parallel_ranges(grid.height, rows, stages[0], [&](std::int64_t begin, std::int64_t end) {
+    OutlineStrip strip;
+    const auto first_row = static_cast<int>(begin);
+    const auto end_row = static_cast<int>(end);
+    strip.begin(grid, first_row, end_row);
+    for (std::size_t i = 0; i < job.layers.size(); ++i) {
+      const EdgeList& edges = job.layers[i].edges;
+      if (edges.high() < first_row && first_row > 0) continue;
+      if (edges.low() > end_row && end_row < grid.height) continue;
+      add_segments(edges, first_row, end_row, grid, &strip);
+      strips[i][static_cast<std::size_t>(begin / rows)] = strip.take();
+    }
+  });
   std::vector<PlaneHaar> trees(job.layers.size());
-  parallel_for(static_cast<std::int64_t>(job.layers.size()), threads, progress.part(0.6, 0.7),
+  parallel_for(static_cast<std::int64_t>(job.layers.size()), stages[1],
                [&](std::int64_t i) { trees[i] = PlaneHaar(grid, strips[i]); });
-  const Progress synthesis = progress.part(0.7, 1.0);
+  const Run synthesis = stages[2];
   switch (image->channels) {
     case 1:
-      set_image<1>(trees, job, cell_depth, rows, threads, synthesis, image);
+      set_image<1>(trees, job, cell_depth, rows, synthesis, image);
       break;
     case 2:
-      set_image<2>(trees, job, cell_depth, rows, threads, synthesis, image);
+      set_image<2>(trees, job, cell_depth, rows, synthesis, image);
       break;
     case 3:
-      set_image<3>(trees, job, cell_depth, rows, threads, synthesis, image);
+      set_image<3>(trees, job, cell_depth, rows, synthesis, image);
       break;
     default:
-      set_image<4>(trees, job, cell_depth, rows, threads, synthesis, image);
+      set_image<4>(trees, job, cell_depth, rows, synthesis, image);
       break;
   }
 }

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/shapes/raster/raster_layers.h"
 
 namespace prefilter {
@@ -16,7 +16,6 @@ int wavelet_depth(int width, int height);
 /// Sets an image to the background plus the sum of each layer's constant color times the winding
 /// numbers of its outlines, as means over the cells of a depth (0 to wavelet_depth, at which cells
 /// are pixels). Throws Error for an image wider or higher than 2^24 pixels.
-void add_up_wavelets(const RasterLayers& job, int depth, int threads, const Progress& progress,
-                     Image* image);
+void add_up_wavelets(const RasterLayers& job, int depth, const Run& run, Image* image);
 
 }  // namespace prefilter

@@ -111,7 +111,7 @@ std::unique_ptr<ByteDecoder> make_uastc_decoder() { return std::make_unique<Uast
 
 std::vector<std::vector<std::uint8_t>> decode_etc1s(const Etc1sCodebooks& codebooks,
                                                     std::span<const Etc1sLevel> levels,
-                                                    const Progress& progress) {
+                                                    const Run& run) {
   make_decoding_tables();
   basist::basisu_lowlevel_etc1s_transcoder transcoder;
   const auto is_count = [](int count) { return count >= 1 && count <= 0xffff; };
@@ -127,7 +127,7 @@ std::vector<std::vector<std::uint8_t>> decode_etc1s(const Etc1sCodebooks& codebo
   std::vector<std::vector<std::uint8_t>> images;
   for (const Etc1sLevel& level : levels) {
     images.push_back(decoded(&transcoder, level));
-    progress.report(static_cast<double>(images.size()) / static_cast<double>(levels.size()));
+    run.report(static_cast<double>(images.size()) / static_cast<double>(levels.size()));
   }
   return images;
 }

@@ -66,7 +66,7 @@ BlockOptions options_for(const BlockOptions& options, int width, int height) {
 
 template <class Channel>
 std::vector<std::uint8_t> compress(const Channel* rgba, int width, int height,
-                                   const BlockOptions& options, const Progress& progress) {
+                                   const BlockOptions& options, const Run& run) {
   if (width < 1 || height < 1) {
     throw_invalid("image: " + std::to_string(width) + " x " + std::to_string(height) +
                   " texels; both sides must be at least 1");
@@ -83,7 +83,7 @@ std::vector<std::uint8_t> compress(const Channel* rgba, int width, int height,
   std::vector<std::uint8_t> blocks(static_cast<std::size_t>(rows * columns * layout.bytes));
   const BlockOptions level_options = options_for(options, width, height);
   WorkerPool<BlockEncoder<Channel>> encoders([&] { return make_encoder<Channel>(level_options); });
-  parallel_for(rows * parts, options.threads, progress, [&](std::int64_t index) {
+  parallel_for(rows * parts, run, [&](std::int64_t index) {
     const std::int64_t row = index / parts;
     const std::int64_t first = index % parts * kBlocksPerTask;
     const std::int64_t end = std::min(first + kBlocksPerTask, columns);
@@ -114,13 +114,13 @@ std::vector<std::uint8_t> compress(const Channel* rgba, int width, int height,
 }  // namespace
 
 std::vector<std::uint8_t> compress_blocks(const std::uint8_t* rgba, int width, int height,
-                                          const BlockOptions& options, const Progress& progress) {
-  return compress(rgba, width, height, options, progress);
+                                          const BlockOptions& options, const Run& run) {
+  return compress(rgba, width, height, options, run);
 }
 
 std::vector<std::uint8_t> compress_blocks(const HalfBits* rgba, int width, int height,
-                                          const BlockOptions& options, const Progress& progress) {
-  return compress(rgba, width, height, options, progress);
+                                          const BlockOptions& options, const Run& run) {
+  return compress(rgba, width, height, options, run);
 }
 
 }  // namespace prefilter

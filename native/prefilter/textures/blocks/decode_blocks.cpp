@@ -53,7 +53,7 @@ std::unique_ptr<HalfDecoder> make_decoder<HalfBits>(const DecodeOptions& options
 
 template <class Channel>
 std::vector<Channel> decode(std::span<const std::uint8_t> blocks, int width, int height,
-                            const DecodeOptions& options, const Progress& progress) {
+                            const DecodeOptions& options, const Run& run) {
   if (width < 1 || height < 1) {
     throw_invalid("image: " + std::to_string(width) + " x " + std::to_string(height) +
                   " texels; both sides must be at least 1");
@@ -73,7 +73,7 @@ std::vector<Channel> decode(std::span<const std::uint8_t> blocks, int width, int
   }
   std::vector<Channel> image(static_cast<std::size_t>(kChannels * width * height));
   WorkerPool<BlockDecoder<Channel>> decoders([&] { return make_decoder<Channel>(options); });
-  parallel_for(rows, options.threads, progress, [&](std::int64_t row) {
+  parallel_for(rows, run, [&](std::int64_t row) {
     const std::int64_t row_channels = kChannels * columns * layout.columns;
     std::vector<Channel> texels(static_cast<std::size_t>(row_channels * layout.rows));
     constexpr auto kOpaque = static_cast<Channel>(kIsFloat<Channel> ? kHalfOne : kByteOne);
@@ -93,14 +93,13 @@ std::vector<Channel> decode(std::span<const std::uint8_t> blocks, int width, int
 }  // namespace
 
 std::vector<std::uint8_t> decode_blocks(std::span<const std::uint8_t> blocks, int width, int height,
-                                        const DecodeOptions& options, const Progress& progress) {
-  return decode<std::uint8_t>(blocks, width, height, options, progress);
+                                        const DecodeOptions& options, const Run& run) {
+  return decode<std::uint8_t>(blocks, width, height, options, run);
 }
 
 std::vector<HalfBits> decode_half_blocks(std::span<const std::uint8_t> blocks, int width,
-                                         int height, const DecodeOptions& options,
-                                         const Progress& progress) {
-  return decode<HalfBits>(blocks, width, height, options, progress);
+                                         int height, const DecodeOptions& options, const Run& run) {
+  return decode<HalfBits>(blocks, width, height, options, run);
 }
 
 }  // namespace prefilter

@@ -172,17 +172,17 @@ Etc1sTexture texture_of(const basisu::basisu_backend_output& output) {
 }  // namespace
 
 Etc1sTexture compress_etc1s(std::span<const Etc1sImage> levels, const Etc1sOptions& options,
-                            const Progress& progress) {
+                            const Run& run) {
   check(levels, options);
   make_etc1s_tables();
-  progress.report(0.0);
+  run.report(0.0);
   Slices slices(levels, options.has_alpha);
-  basisu::job_pool pool(static_cast<std::uint32_t>(resolve_threads(options.threads)));
+  basisu::job_pool pool(static_cast<std::uint32_t>(resolve_threads(run.threads())));
   const auto codebooks = std::make_unique<basisu::basisu_frontend>();
   basisu::basisu_frontend::params params = codebook_params(slices.blocks(), options);
   params.m_pJob_pool = &pool;
   const bool is_valid = codebooks->init(params) && codebooks->compress();
-  progress.report(0.8);
+  run.report(0.8);
   basisu::basisu_backend references;
   basisu::basisu_backend_params how;
   how.m_etc1s = true;
@@ -197,7 +197,7 @@ Etc1sTexture compress_etc1s(std::span<const Etc1sImage> levels, const Etc1sOptio
   if (!is_valid || references.encode() == 0) {
     throw_invalid("levels: Basis Universal cannot compress them as ETC1S");
   }
-  progress.report(1.0);
+  run.report(1.0);
   return texture_of(references.get_output());
 }
 

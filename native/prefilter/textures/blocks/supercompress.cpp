@@ -28,7 +28,7 @@ void check(std::size_t result) {
 }  // namespace
 
 std::vector<std::uint8_t> supercompress(const std::uint8_t* bytes, std::size_t count,
-                                        const Progress& progress) {
+                                        const Run& run) {
   const std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
   if (context == nullptr) throw std::bad_alloc();
   check(ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kZstdLevel));
@@ -42,7 +42,7 @@ std::vector<std::uint8_t> supercompress(const std::uint8_t* bytes, std::size_t c
     // The output has room for the whole frame, so each call consumes its input.
     check(ZSTD_compressStream2(context.get(), &output, &input,
                                is_last ? ZSTD_e_end : ZSTD_e_continue));
-    progress.report(is_last ? 1.0 : static_cast<double>(end) / static_cast<double>(count));
+    run.report(is_last ? 1.0 : static_cast<double>(end) / static_cast<double>(count));
     if (is_last) break;
     start = end;
   }

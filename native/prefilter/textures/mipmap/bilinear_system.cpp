@@ -112,15 +112,15 @@ Image BilinearSystem<C>::means() const {
 
 template <int C>
 void BilinearSystem<C>::add_links(const std::vector<SeamLink>& links, double texels_by_area,
-                                  const Progress& progress) {
+                                  const Run& run) {
   const auto is_part = [this](std::ptrdiff_t j) {
     return system_.diagonal(j) > 0.0F && weights_[j] > 0.0F;
   };
-  links_ = LinkForm(texel_links(links, system_, texels_by_area), is_part, progress);
+  links_ = LinkForm(texel_links(links, system_, texels_by_area), is_part, run);
 }
 
 template <int C>
-void BilinearSystem<C>::start_at_means(const Progress& progress) {
+void BilinearSystem<C>::start_at_means(const Run& run) {
   double sum = 0.0;
   std::int64_t used = 0;
   const auto size = static_cast<std::ptrdiff_t>(system_.size());
@@ -133,7 +133,7 @@ void BilinearSystem<C>::start_at_means(const Progress& progress) {
       static_cast<float>(used > 0 ? kRegularization * sum / static_cast<double>(used) : 0.0);
   system_.make_texels();
   for (std::ptrdiff_t j = 0; j < size; ++j) {
-    if (j % kTexelsPerReport == 0) progress.report(0.0);
+    if (j % kTexelsPerReport == 0) run.report(0.0);
     if (!(system_.diagonal(j) > 0.0F) || !(weights_[j] > 0.0F)) {
       system_.diagonal(j) = 0.0F;
       continue;
@@ -161,8 +161,8 @@ ChannelSums BilinearSystem<C>::square_of_target(const TargetShares& target,
 
 template <int C>
 void BilinearSystem<C>::prepare(const TargetShares& target, const EquationShares& shares,
-                                const Progress& progress) {
-  start_at_means(progress);
+                                const Run& run) {
+  start_at_means(run);
   const auto image_share = static_cast<float>(target.image);
   const auto finer_share = static_cast<float>(target.finer_means);
   const auto own_share = static_cast<float>(target.own_means);
@@ -175,7 +175,7 @@ void BilinearSystem<C>::prepare(const TargetShares& target, const EquationShares
   ChannelSums own_finer{};
   const auto size = static_cast<std::ptrdiff_t>(system_.size());
   for (std::ptrdiff_t j = 0; j < size; ++j) {
-    if (j % kTexelsPerReport == 0) progress.report(0.0);
+    if (j % kTexelsPerReport == 0) run.report(0.0);
     if (!(system_.diagonal(j) > 0.0F)) continue;
     const Lanes image = system_.right_side(j).v;
     const Lanes mean = system_.texel(j).v;
@@ -195,7 +195,7 @@ void BilinearSystem<C>::prepare(const TargetShares& target, const EquationShares
   own_squares_.image = squares_.image;
   std::vector<LaneValues>().swap(finer_means_);
   std::vector<float>().swap(weights_);
-  progress.report(0.0);
+  run.report(0.0);
   system_.invert_diagonal();
 }
 
@@ -225,19 +225,20 @@ double BilinearSystem<C>::squared_error(int first_channel, int threads) const {
 
 template <int C>
 auto BilinearSystem<C>::solve(const TargetShares& target, const SolveOptions& options,
-                              SeamBudget* budget, const Progress& progress) -> Solution {
-  prepare(target, {}, progress);
-  int sweeps = system_.solve(options, has_links() ? progress.part(0.0, 0.3) : progress);
+                              SeamBudget* budget, const Run& run) -> Solution {
+  prepare(target, {}, run);
+  const Stages stages(run, {3, 7});
+  int sweeps = system_.solve(options, has_links() ? stages[0] : run);
   if (has_links()) {
     const int first = budget->first_channel;
     SolveOptions linked = options;
     linked.max_sweeps = linked_sweeps();
-    const LinkedFit fit{[&](double weight, const Progress& part) {
+    const LinkedFit fit{[&](double weight, const Run& part) {
                           weigh_links(weight);
                           sweeps += system_.solve(linked, part);
                         },
-                        [&] { return squared_error(first, options.threads); }};
-    fit_within(target_square(first), fit, progress.part(0.3, 1.0), &system_, budget);
+                        [&] { return squared_error(first, run.threads()); }};
+    fit_within(target_square(first), fit, stages[1], &system_, budget);
   }
   Solution solution = take_solution();
   solution.sweeps = sweeps;

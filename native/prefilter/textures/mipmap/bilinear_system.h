@@ -9,7 +9,7 @@
 
 #include "prefilter/base/image.h"
 #include "prefilter/base/lanes.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/solve/nine_point_system.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/textures/mipmap/level_coupling.h"
@@ -77,9 +77,8 @@ class BilinearSystem {
   /// as for `add`.
   void add_finer_means(const MomentBlock<C>& block);
   /// Adds the integrals of the means of the next finer level, from its coupling with this level.
-  void add_finer_means(const LevelCoupling& coupling, const Image& means, const Progress& progress,
-                       int threads) {
-    coupling.add_fine(means, system_, progress, threads, &finer_means_);
+  void add_finer_means(const LevelCoupling& coupling, const Image& means, const Run& run) {
+    coupling.add_fine(means, system_, run, &finer_means_);
   }
 
   struct Solution {
@@ -90,8 +89,7 @@ class BilinearSystem {
 
   /// Adds the square of each link to the objective, weighted by the area of its strip in space,
   /// times `texels_by_area`, times a weight that `solve` determines. Requires all blocks.
-  void add_links(const std::vector<SeamLink>& links, double texels_by_area,
-                 const Progress& progress);
+  void add_links(const std::vector<SeamLink>& links, double texels_by_area, const Run& run);
   bool has_links() const { return !links_.empty(); }
   /// Sets the weight of the links. Requires `prepare`.
   void weigh_links(double weight) {
@@ -108,11 +106,11 @@ class BilinearSystem {
   /// surface of the channels from budget.first_channel on rises by at most the budget; without,
   /// `budget` may be null. Can be called only once.
   Solution solve(const TargetShares& target, const SolveOptions& options, SeamBudget* budget,
-                 const Progress& progress);
+                 const Run& run);
 
   /// The steps of `solve`, for other solvers that continue from them. `prepare` sets up the system
   /// with the texels at their means p_j.
-  void prepare(const TargetShares& target, const EquationShares& shares, const Progress& progress);
+  void prepare(const TargetShares& target, const EquationShares& shares, const Run& run);
   NinePointSystem<float>& system() { return system_; }
   /// Number of sweeps for a fit with a changed weight of the links.
   int linked_sweeps() const;
@@ -126,7 +124,7 @@ class BilinearSystem {
  private:
   // Initializes texels to their means p_j, excludes those that no lookup reads, and adds the
   // regularization.
-  void start_at_means(const Progress& progress);
+  void start_at_means(const Run& run);
   // Integral of the squared target. `own_finer` is the integral of this level's means times the
   // finer level's.
   ChannelSums square_of_target(const TargetShares& target, const ChannelSums& own_finer) const;
@@ -152,9 +150,9 @@ class BilinearSystem {
 template <int C>
 void add_coupled_means(const std::vector<LevelCoupling>& couplings,
                        const std::vector<std::unique_ptr<BilinearSystem<C>>>& systems,
-                       const Progress& progress, int threads) {
+                       const Run& run) {
   for (std::size_t k = 0; k + 1 < systems.size(); ++k) {
-    systems[k + 1]->add_finer_means(couplings[k], systems[k]->means(), progress, threads);
+    systems[k + 1]->add_finer_means(couplings[k], systems[k]->means(), run);
   }
 }
 

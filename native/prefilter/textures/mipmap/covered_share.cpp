@@ -34,9 +34,9 @@ std::vector<Lookup> lookups(int cells, int samples, int texels) {
 }
 
 // Alpha with a border of one texel defined by the wrap modes, so that lookups need no bounds check.
-Image add_border(const ImageView& alpha, WrapModes wrap, const Progress& progress, int threads) {
+Image add_border(const ImageView& alpha, WrapModes wrap, const Run& run) {
   Image result(alpha.width + 2, alpha.height + 2, 1);
-  parallel_for(result.height, threads, progress, [&](std::int64_t row) {
+  parallel_for(result.height, run, [&](std::int64_t row) {
     const int from_y = wrap_index(static_cast<int>(row) - 1, alpha.height, wrap.v);
     if (from_y < 0) return;
     const float* from = alpha.texel(0, from_y);
@@ -92,9 +92,10 @@ int count_passing(const Image& texels, std::span<const Lookup> columns,
 }  // namespace
 
 double covered_share(const ImageView& alpha, const ImageView& weights, int samples, float threshold,
-                     WrapModes wrap, const Progress& progress, int threads) {
+                     WrapModes wrap, const Run& run) {
   check(alpha, weights, samples);
-  const Image texels = add_border(alpha, wrap, progress.part(0.0, 0.1), threads);
+  const Stages stages(run, {1, 9});
+  const Image texels = add_border(alpha, wrap, stages[0]);
   const std::vector<Lookup> columns = lookups(weights.width, samples, alpha.width);
   const std::vector<Lookup> rows = lookups(weights.height, samples, alpha.height);
   const auto lookups_of = [samples](const std::vector<Lookup>& all, std::int64_t cell) {
@@ -103,7 +104,7 @@ double covered_share(const ImageView& alpha, const ImageView& weights, int sampl
   const auto per_row = static_cast<std::size_t>(weights.height);
   std::vector<double> kept(per_row);
   std::vector<double> all(per_row);
-  parallel_for(weights.height, threads, progress.part(0.1, 1.0), [&](std::int64_t cell_y) {
+  parallel_for(weights.height, stages[1], [&](std::int64_t cell_y) {
     double kept_here = 0.0;
     double all_here = 0.0;
     for (int cell_x = 0; cell_x < weights.width; ++cell_x) {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 
 namespace prefilter {
@@ -18,6 +18,6 @@ namespace prefilter {
 /// if an image does not have one channel, `samples` is less than 1, or no weight is positive; and,
 /// from the progress callback, when cancelled.
 double covered_share(const ImageView& alpha, const ImageView& weights, int samples, float threshold,
-                     WrapModes wrap, const Progress& progress, int threads);
+                     WrapModes wrap, const Run& run);
 
 }  // namespace prefilter

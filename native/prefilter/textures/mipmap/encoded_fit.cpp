@@ -99,7 +99,7 @@ auto EncodedFit<C>::assemble(const std::vector<Cell>& cells) -> Sums {
 }
 
 template <int C>
-auto EncodedFit<C>::assemble(int threads, const Progress& progress) -> ColorSums {
+auto EncodedFit<C>::assemble(const Run& run) -> ColorSums {
   system_.clear();
   std::vector<Sums> sums(cells_.size());
   // Rows of tiles that are not adjacent share no texels.
@@ -108,9 +108,9 @@ auto EncodedFit<C>::assemble(int threads, const Progress& progress) -> ColorSums
     for (int row = 0; row < tile_rows_; ++row) {
       if (tile_color(row, tile_rows_, image_height_) == color) rows.push_back(row);
     }
-    const Progress part = progress.part(static_cast<double>(color) / kTileColors,
-                                        static_cast<double>(color + 1) / kTileColors);
-    parallel_for(static_cast<std::int64_t>(rows.size()), threads, part, [&](std::int64_t i) {
+    const Run part = run.part(static_cast<double>(color) / kTileColors,
+                              static_cast<double>(color + 1) / kTileColors);
+    parallel_for(static_cast<std::int64_t>(rows.size()), part, [&](std::int64_t i) {
       const std::size_t first = static_cast<std::size_t>(rows[i]) * tile_columns_;
       for (std::size_t tile = first; tile < first + tile_columns_; ++tile) {
         sums[tile] = assemble(cells_[tile]);
@@ -158,8 +158,7 @@ void EncodedFit<C>::add_links(const std::vector<SeamLink>& links, double texels_
 
 template <int C>
 Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>& used,
-                           const SolveOptions& options, SeamBudget* budget,
-                           const Progress& progress) {
+                           const SolveOptions& options, SeamBudget* budget, const Run& run) {
   system_.make_texels();
   for (int y = 0; y < system_.height(); ++y) {
     for (int x = 0; x < system_.width(); ++x) {
@@ -175,34 +174,32 @@ Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>&
       }
     }
     links_ = LinkForm(
-        all_links_, [&](std::ptrdiff_t at) { return is_used[at] != 0; }, progress.part(0.0, 0.0));
+        all_links_, [&](std::ptrdiff_t at) { return is_used[at] != 0; }, run.part(0.0, 0.0));
     std::vector<TexelLink>().swap(all_links_);
   }
   const bool searches = !links_.empty();
-  iterate(start, used, 0.0, options, searches ? progress.part(0.0, 0.3) : progress);
+  iterate(start, used, 0.0, options, searches ? run.part(0.0, 0.3) : run);
   if (searches) {
-    const Progress part = progress.part(0.3, 0.3);
+    const Run part = run.part(0.3, 0.3);
     double square = 0.0;
     for (int c = 0; c < kColors; ++c) square += image_squares_[c];
-    const LinkedFit fit{[&](double weight, const Progress& fitting) {
-                          iterate(start, used, weight, options, fitting);
-                        },
-                        [&] {
-                          double sum = square;
-                          for (const double of_channel : assemble(options.threads, part)) {
-                            sum += of_channel;
-                          }
-                          return sum;
-                        }};
-    fit_within(square, fit, progress.part(0.3, 1.0), &system_, budget);
+    const LinkedFit fit{
+        [&](double weight, const Run& fitting) { iterate(start, used, weight, options, fitting); },
+        [&] {
+          double sum = square;
+          for (const double of_channel : assemble(part)) {
+            sum += of_channel;
+          }
+          return sum;
+        }};
+    fit_within(square, fit, run.part(0.3, 1.0), &system_, budget);
   }
   return system_.take_image(C);
 }
 
 template <int C>
-auto EncodedFit<C>::sums_with_links(double weight, int threads, const Progress& progress)
-    -> ColorSums {
-  ColorSums sums = assemble(threads, progress);
+auto EncodedFit<C>::sums_with_links(double weight, const Run& run) -> ColorSums {
+  ColorSums sums = assemble(run);
   if (weight == 0.0) return sums;
   const ColorSums of_links = link_squares(weight);
   for (int c = 0; c < kColors; ++c) sums[c] += of_links[c];
@@ -211,8 +208,7 @@ auto EncodedFit<C>::sums_with_links(double weight, int threads, const Progress& 
 
 template <int C>
 auto EncodedFit<C>::backtrack(const std::vector<LaneValues>& before, const ColorSums& least,
-                              double weight, int threads, const Progress& progress, ColorSums sums)
-    -> ColorSums {
+                              double weight, const Run& run, ColorSums sums) -> ColorSums {
   constexpr int kMostHalvings = 5;
   for (int halving = 0; halving <= kMostHalvings; ++halving) {
     Lanes keep{};
@@ -227,7 +223,7 @@ auto EncodedFit<C>::backtrack(const std::vector<LaneValues>& before, const Color
       LaneValues& texel = system_.texel(static_cast<std::ptrdiff_t>(i));
       texel.v += keep * (before[i].v - texel.v);
     }
-    sums = sums_with_links(weight, threads, progress);
+    sums = sums_with_links(weight, run);
   }
   return sums;
 }
@@ -259,7 +255,7 @@ void EncodedFit<C>::add_regularization(const Image& start, const std::vector<uns
 
 template <int C>
 void EncodedFit<C>::iterate(const Image& start, const std::vector<unsigned char>& used,
-                            double weight, const SolveOptions& options, const Progress& progress) {
+                            double weight, const SolveOptions& options, const Run& run) {
   SolveOptions round_options = options;
   round_options.max_sweeps = kSweepsPerRound;
   round_options.ranges_times_alpha = false;
@@ -267,14 +263,14 @@ void EncodedFit<C>::iterate(const Image& start, const std::vector<unsigned char>
   ColorSums first{};
   ColorSums least{};
   for (int round = 0; round < kMaxGaussNewtonRounds; ++round) {
-    const Progress part = progress.part(static_cast<double>(round) / kMaxGaussNewtonRounds,
-                                        static_cast<double>(round + 1) / kMaxGaussNewtonRounds);
-    const Progress assembling = part.part(0.0, 0.4);
-    ColorSums sums = sums_with_links(weight, options.threads, assembling);
+    const Run part = run.part(static_cast<double>(round) / kMaxGaussNewtonRounds,
+                              static_cast<double>(round + 1) / kMaxGaussNewtonRounds);
+    const Run assembling = part.part(0.0, 0.4);
+    ColorSums sums = sums_with_links(weight, assembling);
     if (round == 0) {
       first = least = sums;
     } else {
-      sums = backtrack(before, least, weight, options.threads, assembling, sums);
+      sums = backtrack(before, least, weight, assembling, sums);
       bool settled = true;
       for (int c = 0; c < kColors; ++c) {
         if (least[c] - sums[c] > kMinRelativeGain * (first[c] - sums[c])) settled = false;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/solve/nine_point_system.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/textures/mipmap/seam_links.h"
@@ -41,7 +41,7 @@ class EncodedFit {
   /// for each texel that the surface reads. If there are links, the error of the colors rises by at
   /// most the budget. Can be called only once.
   Image solve(const Image& start, const std::vector<unsigned char>& used,
-              const SolveOptions& options, SeamBudget* budget, const Progress& progress);
+              const SolveOptions& options, SeamBudget* budget, const Run& run);
 
  private:
   static constexpr int kColors = C < 3 ? C : 3;
@@ -57,23 +57,23 @@ class EncodedFit {
 
   // Assembles the Gauss-Newton system at the current texels. Returns the sum of squares of each
   // channel, up to a constant and without links.
-  ColorSums assemble(int threads, const Progress& progress);
+  ColorSums assemble(const Run& run);
   // The links' contribution to the sums of squares.
   ColorSums link_squares(double weight) const;
   // A difference of encoded values is weighted by the curve's mean squared slope at the start,
   // which stays fixed so that all iterations have the same objective.
   Lanes link_weights(double weight) const;
   // The sums of squares of the current texels including links of this weight. Assembles the system.
-  ColorSums sums_with_links(double weight, int threads, const Progress& progress);
+  ColorSums sums_with_links(double weight, const Run& run);
   // Halves the step from `before` to the current texels until no channel's sum is above `least`,
   // starting from their sums `sums`. Returns the final sums.
   ColorSums backtrack(const std::vector<LaneValues>& before, const ColorSums& least, double weight,
-                      int threads, const Progress& progress, ColorSums sums);
+                      const Run& run, ColorSums sums);
   // Adds the regularization toward the start to the system.
   void add_regularization(const Image& start, const std::vector<unsigned char>& used);
   // Gauss-Newton iterations from the current texels to the fit with links of this weight.
   void iterate(const Image& start, const std::vector<unsigned char>& used, double weight,
-               const SolveOptions& options, const Progress& progress);
+               const SolveOptions& options, const Run& run);
 
   struct Sums {
     ColorSums squares{};

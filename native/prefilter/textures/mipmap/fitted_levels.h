@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/solve/nine_point_system.h"
 #include "prefilter/images/filters/filtered_image.h"
 #include "prefilter/textures/mipmap/seam_links.h"
@@ -20,7 +20,6 @@ namespace prefilter {
 std::vector<Image> fitted_levels(const FilteredImage& image,
                                  const std::vector<const Surface*>& surfaces,
                                  const std::vector<SeamEdge>& seams, const SolveOptions& solve,
-                                 const MipmapOptions& options, int level_count,
-                                 const Progress& progress);
+                                 const MipmapOptions& options, int level_count, const Run& run);
 
 }  // namespace prefilter

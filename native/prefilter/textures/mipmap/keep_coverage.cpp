@@ -61,9 +61,9 @@ class CoverageKeeper {
       : levels_(levels), options_(options) {
     const int width = grid_side(levels[0].width);
     const int height = grid_side(levels[0].height);
-    areas_ = surfaces.empty() ? Image(width, height, 1, 1.0F)
-                              : texel_weights(surfaces, width, height, options.wrap,
-                                              options.progress.part(0.0, 0.3), options.threads);
+    areas_ = surfaces.empty()
+                 ? Image(width, height, 1, 1.0F)
+                 : texel_weights(surfaces, width, height, options.wrap, options.run.part(0.0, 0.3));
   }
 
   std::vector<Image> run() {
@@ -76,7 +76,7 @@ class CoverageKeeper {
       // Each level has a quarter of the texels of the one before.
       done += 0.75 * (1.0 - done);
     }
-    options_.progress.report(1.0);
+    options_.run.report(1.0);
     return adjusted;
   }
 
@@ -90,14 +90,13 @@ class CoverageKeeper {
     return covered_share(
         alpha.view(), areas_.view(),
         std::max(samples(alpha.width, areas_.width), samples(alpha.height, areas_.height)),
-        static_cast<float>(options_.threshold), options_.wrap, options_.progress.part(done, done),
-        options_.threads);
+        static_cast<float>(options_.threshold), options_.wrap, options_.run.part(done, done));
   }
 
   // Calls use(texel of the image, alpha) for each texel.
   template <typename Texels, typename Use>
   void for_each(Texels* image, Image* alpha, const Use& use) const {
-    parallel_for(image->height, options_.threads, Progress(), [&](std::int64_t row) {
+    parallel_for(image->height, Run(options_.run.threads()), [&](std::int64_t row) {
       auto* texel = image->texel(0, static_cast<int>(row));
       float* value = alpha->texel(0, static_cast<int>(row));
       for (int x = 0; x < image->width; ++x, texel += image->channels) use(texel, value + x);
@@ -192,7 +191,7 @@ class CoverageKeeper {
 
 bool has_finite_alpha(const ImageView& level, int threads) {
   std::atomic<bool> result{true};
-  parallel_for(level.height, threads, Progress(), [&](std::int64_t y) {
+  parallel_for(level.height, Run(threads), [&](std::int64_t y) {
     const float* alpha = level.texel(0, static_cast<int>(y)) + level.channels - 1;
     for (int x = 0; x < level.width; ++x, alpha += level.channels) {
       if (!std::isfinite(*alpha)) result.store(false);
@@ -209,7 +208,7 @@ void check(const std::vector<ImageView>& levels, const CoverageOptions& options)
       throw_invalid("levels: level " + std::to_string(k) + " has " + std::to_string(channels) +
                     " channels; all need 4, the last of them alpha, or all 1");
     }
-    if (k > 0 && !has_finite_alpha(levels[k], options.threads)) {
+    if (k > 0 && !has_finite_alpha(levels[k], options.run.threads())) {
       throw_invalid("levels: level " + std::to_string(k) + " holds alpha that is not finite");
     }
   }

@@ -116,7 +116,7 @@ void LevelCoupling::add(const MomentBlock<C>& block) {
 void LevelCoupling::subtract_coarse(const NinePointSystem<float>& fine,
                                     const NinePointSystem<float>& coarse, float scale, int threads,
                                     std::vector<LaneValues>* sums) const {
-  parallel_for(y_.size, threads, Progress(), [&](std::int64_t row) {
+  parallel_for(y_.size, Run(threads), [&](std::int64_t row) {
     const std::array<float, 9>* products = products_.data() + row * x_.size;
     LaneValues* row_sums = sums->data() + fine.at(0, static_cast<int>(row));
     const LaneValues* texels[3];
@@ -131,10 +131,9 @@ void LevelCoupling::subtract_coarse(const NinePointSystem<float>& fine,
 
 template <typename Texel>
 void LevelCoupling::add_fine_texels(const Texel& texel, const NinePointSystem<float>& coarse,
-                                    const Progress& progress, int threads,
-                                    std::vector<LaneValues>* sums) const {
+                                    const Run& run, std::vector<LaneValues>* sums) const {
   // Each band of the next level's rows gathers its contributions in the order of the finer rows.
-  parallel_ranges(y_.next_size, kCoupledRowsPerTask, threads, progress, [&](int begin, int end) {
+  parallel_ranges(y_.next_size, kCoupledRowsPerTask, run, [&](int begin, int end) {
     for (int y = 0; y < y_.size; ++y) {
       for (int slot = 0; slot < 3; ++slot) {
         const int row = rows_[y][slot];
@@ -157,19 +156,18 @@ void LevelCoupling::subtract_fine(const NinePointSystem<float>& fine,
                                   const NinePointSystem<float>& coarse, float scale, int threads,
                                   std::vector<LaneValues>* sums) const {
   const auto texel = [&](int x, int y) { return -scale * fine.texel(fine.at(x, y)).v; };
-  add_fine_texels(texel, coarse, Progress(), threads, sums);
+  add_fine_texels(texel, coarse, Run(threads), sums);
 }
 
 void LevelCoupling::add_fine(const Image& image, const NinePointSystem<float>& coarse,
-                             const Progress& progress, int threads,
-                             std::vector<LaneValues>* sums) const {
+                             const Run& run, std::vector<LaneValues>* sums) const {
   const auto texel = [&](int x, int y) {
     const float* values = image.view().texel(x, y);
     Lanes lanes{};
     for (int c = 0; c < image.channels; ++c) lanes[c] = values[c];
     return lanes;
   };
-  add_fine_texels(texel, coarse, progress, threads, sums);
+  add_fine_texels(texel, coarse, run, sums);
 }
 
 template void LevelCoupling::add<1>(const MomentBlock<1>&);

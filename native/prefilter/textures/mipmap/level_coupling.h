@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/solve/nine_point_system.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/textures/texels/moment_sweep.h"
@@ -33,8 +33,8 @@ class LevelCoupling {
   void subtract_fine(const NinePointSystem<float>& fine, const NinePointSystem<float>& coarse,
                      float scale, int threads, std::vector<LaneValues>* sums) const;
   /// sums_k += sum_j <b_j B_k> image_j, for an image of the finer level's size.
-  void add_fine(const Image& image, const NinePointSystem<float>& coarse, const Progress& progress,
-                int threads, std::vector<LaneValues>* sums) const;
+  void add_fine(const Image& image, const NinePointSystem<float>& coarse, const Run& run,
+                std::vector<LaneValues>* sums) const;
 
  private:
   using Triple = std::array<int, 3>;
@@ -68,8 +68,8 @@ class LevelCoupling {
 
   // sums_k += sum_j <b_j B_k> texel(x, y), for the texels j of the level.
   template <typename Texel>
-  void add_fine_texels(const Texel& texel, const NinePointSystem<float>& coarse,
-                       const Progress& progress, int threads, std::vector<LaneValues>* sums) const;
+  void add_fine_texels(const Texel& texel, const NinePointSystem<float>& coarse, const Run& run,
+                       std::vector<LaneValues>* sums) const;
 
   Axis x_;
   Axis y_;

@@ -38,15 +38,15 @@ void LevelSystems<C>::expect_finer_means() {
 }
 
 template <int C>
-void LevelSystems<C>::add_coupled_means(const Progress& progress, int threads) {
-  prefilter::add_coupled_means(couplings, linear, progress, threads);
+void LevelSystems<C>::add_coupled_means(const Run& run) {
+  prefilter::add_coupled_means(couplings, linear, run);
   std::vector<LevelCoupling>().swap(couplings);
 }
 
 template <int C>
 TargetSquares sum_image(const TexelTriangles& triangles, const SweptImage& image, WrapModes wrap,
-                        Reader reader, bool has_squares, int last_level, const Progress& progress,
-                        int threads, const AddBlock<C>& add) {
+                        Reader reader, bool has_squares, int last_level, const Run& run,
+                        const AddBlock<C>& add) {
   const TexelSource& swept = image.swept;
   BlockSums of_image(swept.width, swept.height);
   BlockSums of_means(swept.width, swept.height);
@@ -59,22 +59,20 @@ TargetSquares sum_image(const TexelTriangles& triangles, const SweptImage& image
     of_means.add(block.index, integral_of_means_with(block, image.means->view(), wrap));
     of_both.add(block.index, integral_of_means_with(block, image.floats, wrap));
   };
-  sweep_moments<C>(triangles, swept, wrap,
-                   {.first_level = has_squares ? 0 : 1,
-                    .last_level = last_level,
-                    .reader = reader,
-                    .means = image.means,
-                    .threads = threads},
-                   progress, [&](const MomentBlock<C>& block) {
-                     block.level > 0 ? add(block) : add_squares(block);
-                   });
+  sweep_moments<C>(
+      triangles, swept, wrap,
+      {.first_level = has_squares ? 0 : 1,
+       .last_level = last_level,
+       .reader = reader,
+       .means = image.means},
+      run, [&](const MomentBlock<C>& block) { block.level > 0 ? add(block) : add_squares(block); });
   return {of_image.total(), of_means.total(), of_both.total()};
 }
 
 #define PREFILTER_INSTANTIATE(C)                                                                   \
   template struct LevelSystems<C>;                                                                 \
   template TargetSquares sum_image<C>(const TexelTriangles&, const SweptImage&, WrapModes, Reader, \
-                                      bool, int, const Progress&, int, const AddBlock<C>&)
+                                      bool, int, const Run&, const AddBlock<C>&)
 PREFILTER_INSTANTIATE(1);
 PREFILTER_INSTANTIATE(2);
 PREFILTER_INSTANTIATE(3);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/textures/mipmap/bilinear_system.h"
 #include "prefilter/textures/mipmap/encoded_fit.h"
@@ -32,7 +32,7 @@ struct LevelSystems {
   /// Like TrilinearSystem::expect_finer_means; to be called before blocks are added.
   void expect_finer_means();
   void add_finer_means(const MomentBlock<C>& block) { linear.front()->add_finer_means(block); }
-  void add_coupled_means(const Progress& progress, int threads);
+  void add_coupled_means(const Run& run);
 
  private:
   int width_;
@@ -54,7 +54,7 @@ struct SweptImage {
 /// integrals of the squares of the image, as the reader shows it, and of the means.
 template <int C>
 TargetSquares sum_image(const TexelTriangles& triangles, const SweptImage& image, WrapModes wrap,
-                        Reader reader, bool has_squares, int last_level, const Progress& progress,
-                        int threads, const AddBlock<C>& add);
+                        Reader reader, bool has_squares, int last_level, const Run& run,
+                        const AddBlock<C>& add);
 
 }  // namespace prefilter

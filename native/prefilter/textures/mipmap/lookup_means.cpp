@@ -57,7 +57,7 @@ void check(const ImageView& normals, const ImageView& roughness) {
 }  // namespace
 
 Image lookup_means(const ImageView& normals, const ImageView& roughness, WrapModes wrap,
-                   float least_length, const Progress& progress, int threads) {
+                   float least_length, const Run& run) {
   check(normals, roughness);
   Image means(normals.width, normals.height, 4);
   const auto read = [&](int x, int y) {
@@ -67,7 +67,7 @@ Image lookup_means(const ImageView& normals, const ImageView& roughness, WrapMod
     const float* const normal = normals.texel(in_x, in_y);
     return Values{normal[0], normal[1], normal[2], *roughness.texel(in_x, in_y)};
   };
-  parallel_for(normals.height, threads, progress, [&](std::int64_t row) {
+  parallel_for(normals.height, run, [&](std::int64_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < normals.width; ++x) {
       std::array<std::array<Values, 3>, 3> around;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 
 namespace prefilter {
@@ -17,6 +17,6 @@ namespace prefilter {
 /// if `normals` does not have 3 channels, `roughness` not one, or their sizes differ; and, from the
 /// progress callback, when cancelled.
 Image lookup_means(const ImageView& normals, const ImageView& roughness, WrapModes wrap,
-                   float least_length, const Progress& progress, int threads);
+                   float least_length, const Run& run);
 
 }  // namespace prefilter

@@ -123,15 +123,15 @@ std::vector<double> errors_at(const std::vector<double>& mip_values,
 template <int C>
 std::vector<double> measure(const std::vector<ImageView>& levels, const ImageView& image,
                             const TexelTriangles& triangles, const std::vector<double>& mip_values,
-                            WrapModes wrap, const Progress& progress, int threads) {
+                            WrapModes wrap, const Run& run) {
   const auto level_count = static_cast<int>(levels.size());
   const std::int64_t block_count = sweep_block_count(image.width, image.height);
   std::vector<Integrals> parts(static_cast<std::size_t>(block_count * level_count));
   std::vector<double> image_parts(static_cast<std::size_t>(block_count));
 
   sweep_moments<C>(
-      triangles, image, wrap, {.first_level = 0, .last_level = level_count - 1, .threads = threads},
-      progress, [&](const MomentBlock<C>& block) {
+      triangles, image, wrap, {.first_level = 0, .last_level = level_count - 1}, run,
+      [&](const MomentBlock<C>& block) {
         const ImageView& level = levels[block.level];
         const bool has_next = block.level + 1 < level_count;
         const ImageView& next = levels[has_next ? block.level + 1 : block.level];
@@ -172,7 +172,7 @@ std::vector<double> measure(const std::vector<ImageView>& levels, const ImageVie
     squares.push_back({sums.level_level - 2.0 * sums.level_image + image_image,
                        sums.step_level - sums.step_image, sums.step_step});
   }
-  progress.report(1.0);
+  run.report(1.0);
   return errors_at(mip_values, squares, triangles.total_mass * C);
 }
 
@@ -218,12 +218,12 @@ template <int C>
 std::vector<double> measure_decoded(const std::vector<ImageView>& levels, const ImageView& image,
                                     const TexelTriangles& triangles,
                                     const std::vector<double>& mip_values, WrapModes wrap,
-                                    const Progress& progress, int threads) {
+                                    const Run& run) {
   const std::size_t level_count = levels.size();
   const std::int64_t block_count = sweep_block_count(image.width, image.height);
   std::vector<Squares> parts(static_cast<std::size_t>(block_count) * level_count);
-  sweep_moments<C>(triangles, image, wrap, {.first_level = 0, .last_level = 0, .threads = threads},
-                   progress, [&](const MomentBlock<C>& block) {
+  sweep_moments<C>(triangles, image, wrap, {.first_level = 0, .last_level = 0}, run,
+                   [&](const MomentBlock<C>& block) {
                      const double* const x_lines = block.x_cells->lines(0).data() + block.x0;
                      const double* const y_lines = block.y_cells->lines(0).data() + block.y0;
                      for (int y = 0; y < block.height; ++y) {
@@ -240,7 +240,7 @@ std::vector<double> measure_decoded(const std::vector<ImageView>& levels, const 
                        }
                      }
                    });
-  progress.report(1.0);
+  run.report(1.0);
   return errors_at(mip_values, totals_of_levels(parts, level_count), triangles.total_mass * C);
 }
 
@@ -275,11 +275,12 @@ void check(const std::vector<ImageView>& levels, const ImageView& image,
 // Returns the view itself if all values are finite; otherwise a view of a copy in `owner` with the
 // texels that no lookup reads set to 0.
 ImageView readable(const ImageView& view, const std::string& name,
-                   const std::vector<const Surface*>& surfaces, WrapModes wrap,
-                   const Progress& progress, int threads, Image* owner) {
-  if (all_filterable(view, progress.part(0.0, 0.5), threads)) return view;
+                   const std::vector<const Surface*>& surfaces, WrapModes wrap, const Run& run,
+                   Image* owner) {
+  const Stages stages(run, {1, 1});
+  if (all_filterable(view, stages[0])) return view;
   const std::vector<unsigned char> read =
-      looked_up_texels(surfaces, view.width, view.height, wrap, progress.part(0.5, 1.0), threads);
+      looked_up_texels(surfaces, view.width, view.height, wrap, stages[1]);
   *owner = Image(view);
   for (std::size_t i = 0; i < owner->data.size(); ++i) {
     float& value = owner->data[i];
@@ -300,42 +301,41 @@ ImageView readable(const ImageView& view, const std::string& name,
 std::vector<double> mipmap_error(const std::vector<ImageView>& levels, const ImageView& image,
                                  const std::vector<const Surface*>& surfaces,
                                  const std::vector<double>& mip_values, WrapModes wrap,
-                                 Reader reader, const Progress& progress, int threads) {
+                                 Reader reader, const Run& run) {
   check(levels, image, surfaces, mip_values);
   std::vector<Image> owners(levels.size() + 1);
   const ImageView readable_image =
-      readable(image, "image", surfaces, wrap, progress.part(0.0, 0.05), threads, &owners.back());
+      readable(image, "image", surfaces, wrap, run.part(0.0, 0.05), &owners.back());
   std::vector<ImageView> views;
   for (std::size_t k = 0; k < levels.size(); ++k) {
     views.push_back(readable(levels[k], "levels: level " + std::to_string(k), surfaces, wrap,
-                             progress.part(0.05, 0.1), threads, &owners[k]));
+                             run.part(0.05, 0.1), &owners[k]));
   }
-  const TexelTriangles triangles = map_to_texels(surfaces, image.width, image.height, wrap,
-                                                 MassOf::kArea, progress.part(0.1, 0.15), threads);
+  const TexelTriangles triangles =
+      map_to_texels(surfaces, image.width, image.height, wrap, MassOf::kArea, run.part(0.1, 0.15));
   check_mapped(triangles);
   std::vector<Image> encoded;
   if (reader == Reader::kSrgbAfter) {
-    for (const ImageView& view : views) encoded.push_back(encode_srgb(view, threads));
-    encoded.push_back(encode_srgb(readable_image, threads));
+    for (const ImageView& view : views) encoded.push_back(encode_srgb(view, run.threads()));
+    encoded.push_back(encode_srgb(readable_image, run.threads()));
     for (std::size_t k = 0; k < views.size(); ++k) views[k] = encoded[k].view();
   }
-  const auto run = [&]<int C>() {
+  const auto measure_channels = [&]<int C>() {
     if (reader == Reader::kSrgbAfter) {
       return measure_decoded<C>(views, encoded.back().view(), triangles, mip_values, wrap,
-                                progress.part(0.15, 1.0), threads);
+                                run.part(0.15, 1.0));
     }
-    return measure<C>(views, readable_image, triangles, mip_values, wrap, progress.part(0.15, 1.0),
-                      threads);
+    return measure<C>(views, readable_image, triangles, mip_values, wrap, run.part(0.15, 1.0));
   };
   switch (image.channels) {
     case 1:
-      return run.operator()<1>();
+      return measure_channels.operator()<1>();
     case 2:
-      return run.operator()<2>();
+      return measure_channels.operator()<2>();
     case 3:
-      return run.operator()<3>();
+      return measure_channels.operator()<3>();
     default:
-      return run.operator()<4>();
+      return measure_channels.operator()<4>();
   }
 }
 

@@ -56,18 +56,18 @@ bool needs_floats(const MipmapOptions& options) {
 }
 
 TexelTriangles mapped(const std::vector<const Surface*>& surfaces, const TexelSource& image,
-                      const MipmapOptions& options, const Progress& progress) {
-  TexelTriangles triangles = map_to_texels(surfaces, image.width, image.height, options.wrap,
-                                           MassOf::kArea, progress, options.threads);
+                      const MipmapOptions& options, const Run& run) {
+  TexelTriangles triangles =
+      map_to_texels(surfaces, image.width, image.height, options.wrap, MassOf::kArea, run);
   check_mapped(triangles);
   return triangles;
 }
 
 std::vector<unsigned char> covered_texels(const std::vector<const Surface*>& surfaces,
                                           const TexelSource& image, const MipmapOptions& options,
-                                          const Progress& progress) {
+                                          const Run& run) {
   std::vector<unsigned char> covered =
-      touched_texels(surfaces, image.width, image.height, options.wrap, progress, options.threads);
+      touched_texels(surfaces, image.width, image.height, options.wrap, run);
   if (std::find(covered.begin(), covered.end(), 1) == covered.end()) throw_outside();
   return covered;
 }
@@ -77,23 +77,22 @@ std::vector<unsigned char> covered_texels(const std::vector<const Surface*>& sur
 std::vector<unsigned char> read_texels(const std::vector<const Surface*>& surfaces,
                                        const TexelSource& image,
                                        const std::vector<unsigned char>& covered,
-                                       const MipmapOptions& options, const Progress& progress) {
+                                       const MipmapOptions& options, const Run& run) {
   switch (reads_of(options.filter)) {
     case Reads::kAll:
       break;
     case Reads::kTouched:
       return covered;
     case Reads::kWeighted: {
+      const Stages stages(run, {3, 7});
       const std::vector<float> masses =
-          texel_masses(mapped(surfaces, image, options, progress.part(0.0, 0.3)),
-                       progress.part(0.3, 1.0), options.threads);
+          texel_masses(mapped(surfaces, image, options, stages[0]), stages[1]);
       std::vector<unsigned char> read(masses.size());
       for (std::size_t i = 0; i < masses.size(); ++i) read[i] = masses[i] > 0.0F ? 1 : 0;
       return read;
     }
     case Reads::kLookedUp:
-      return looked_up_texels(surfaces, image.width, image.height, options.wrap, progress,
-                              options.threads);
+      return looked_up_texels(surfaces, image.width, image.height, options.wrap, run);
   }
   return std::vector<unsigned char>(static_cast<std::size_t>(image.width) * image.height, 1);
 }
@@ -102,16 +101,15 @@ std::vector<unsigned char> read_texels(const std::vector<const Surface*>& surfac
 std::vector<Image> texture_space_levels(const ImageView& image,
                                         const std::vector<unsigned char>& covered,
                                         const MipmapOptions& options, int level_count,
-                                        const Progress& progress) {
+                                        const Run& run) {
   const Kernel& kernel = *std::get<TextureSpaceFilter>(options.filter).kernel;
   std::vector<Image> levels;
   for (int level = 1; level < level_count; ++level) {
-    const Progress part = progress.part(static_cast<double>(level - 1) / (level_count - 1),
-                                        static_cast<double>(level) / (level_count - 1));
+    const Run part = run.part(static_cast<double>(level - 1) / (level_count - 1),
+                              static_cast<double>(level) / (level_count - 1));
     levels.push_back(covered.empty()
-                         ? filter_level(image, level, kernel, options.wrap, part, options.threads)
-                         : filter_covered_level(image, covered, level, kernel, options.wrap, part,
-                                                options.threads));
+                         ? filter_level(image, level, kernel, options.wrap, part)
+                         : filter_covered_level(image, covered, level, kernel, options.wrap, part));
   }
   return levels;
 }
@@ -122,12 +120,11 @@ SolveOptions solve_options(const FilteredImage& image, const MipmapOptions& opti
     solve.ranges[c] = image.solved_range(c, range_of(options.bounds));
   }
   solve.ranges_times_alpha = image.is_multiplied();
-  solve.threads = options.threads;
   return solve;
 }
 
-void clip(const ValueRange& range, const Progress& progress, int threads, Image* level) {
-  parallel_for(level->height, threads, progress, [&](std::int64_t y) {
+void clip(const ValueRange& range, const Run& run, Image* level) {
+  parallel_for(level->height, run, [&](std::int64_t y) {
     float* row = level->texel(0, static_cast<int>(y));
     for (int i = 0; i < level->width * level->channels; ++i) {
       row[i] = std::min(std::max(row[i], range.low), range.high);
@@ -139,27 +136,25 @@ void clip(const ValueRange& range, const Progress& progress, int threads, Image*
 std::vector<Image> make_levels(const TexelSource& source,
                                const std::vector<const Surface*>& surfaces,
                                const MipmapOptions& options) {
-  const Progress& progress = options.progress;
+  const Run& run = options.run;
   const Reads reads = reads_of(options.filter);
   const int level_count =
       options.levels > 0 ? options.levels : full_level_count(source.width, source.height);
   std::vector<SeamEdge> seams;  // to be hidden by the fits
   if (options.seam_budget != 0.0 && is_fit(options.filter)) {
-    seams = find_seams(surfaces, progress.part(0.0, 0.0));
+    seams = find_seams(surfaces, run.part(0.0, 0.0));
   }
   std::vector<unsigned char> covered;
   if (reads == Reads::kTouched) {
-    covered = covered_texels(surfaces, source, options, progress.part(0.0, 0.1));
+    covered = covered_texels(surfaces, source, options, run.part(0.0, 0.1));
   }
   const FilteredImage image(
-      source,
-      [&] { return read_texels(surfaces, source, covered, options, progress.part(0.11, 0.15)); },
+      source, [&] { return read_texels(surfaces, source, covered, options, run.part(0.11, 0.15)); },
       {.alpha = alpha_channel(source.channels, options.premultiplied),
        .needs_floats = needs_floats(options),
        .name = options.image_name,
-       .threads = options.threads,
-       .progress = progress.part(0.1, 0.16)});
-  const Progress making = progress.part(0.16, 0.97);
+       .run = run.part(0.1, 0.16)});
+  const Run making = run.part(0.16, 0.97);
   std::vector<Image> levels;
   switch (reads) {
     case Reads::kAll:
@@ -169,7 +164,7 @@ std::vector<Image> make_levels(const TexelSource& source,
     case Reads::kWeighted:
       levels =
           pam_box_levels(image.texels(), mapped(surfaces, source, options, making.part(0.0, 0.05)),
-                         level_count, options.wrap, making.part(0.05, 1.0), options.threads);
+                         level_count, options.wrap, making.part(0.05, 1.0));
       break;
     case Reads::kLookedUp:
       levels = fitted_levels(image, surfaces, seams, solve_options(image, options), options,
@@ -177,10 +172,10 @@ std::vector<Image> make_levels(const TexelSource& source,
       break;
   }
   for (Image& level : levels) {
-    image.divide_by_alpha(options.wrap, progress.part(0.97, 0.98), options.threads, &level);
-    clip(range_of(options.bounds), progress.part(0.98, 0.99), options.threads, &level);
+    image.divide_by_alpha(options.wrap, run.part(0.97, 0.98), &level);
+    clip(range_of(options.bounds), run.part(0.98, 0.99), &level);
   }
-  progress.report(1.0);
+  run.report(1.0);
   return levels;
 }
 
@@ -223,8 +218,8 @@ void check_options(const TexelSource& image, const std::vector<const Surface*>& 
                   "; values other than 0 require least squares (" + fit_names() +
                   ") and the linear reader");
   }
-  if (options.threads < 0) {
-    throw_invalid("threads: " + std::to_string(options.threads) +
+  if (options.run.threads() < 0) {
+    throw_invalid("threads: " + std::to_string(options.run.threads()) +
                   "; a positive number is needed, or 0 for all processors");
   }
   if (options.filter == MipmapFilter(SurfaceFilter::kTrilinear) &&

@@ -29,8 +29,8 @@ constexpr double kMinNormalLength = 0.02;
 
 // Calls change(texel) for each texel.
 template <typename Change>
-void for_each_texel(Image* image, const Progress& progress, int threads, const Change& change) {
-  parallel_for(image->height, threads, progress, [&](std::int64_t row) {
+void for_each_texel(Image* image, const Run& run, const Change& change) {
+  parallel_for(image->height, run, [&](std::int64_t row) {
     float* texel = image->texel(0, static_cast<int>(row));
     for (int x = 0; x < image->width; ++x, texel += image->channels) change(texel);
   });
@@ -74,13 +74,13 @@ class NormalFilter {
   NormalMipmaps run() {
     const double share = roughness_ == nullptr ? 1.0 : 0.5;
     NormalMipmaps levels;
-    decode(options_.progress.part(0.0, 0.2 * share));
+    decode(options_.run.part(0.0, 0.2 * share));
     MipmapOptions means = mipmap_options(options_.filter, false, 0.2 * share, share);
     means.footprint = options_.footprint;
     levels.normals = coarser_levels(vectors_.view(), surfaces_, means);
-    for (Image& level : levels.normals) finish(options_.progress.part(share, share), &level);
+    for (Image& level : levels.normals) finish(options_.run.part(share, share), &level);
     if (roughness_ != nullptr) levels.roughness = rougher_levels();
-    options_.progress.report(1.0);
+    options_.run.report(1.0);
     return levels;
   }
 
@@ -94,24 +94,23 @@ class NormalFilter {
     options.bounds = {std::nullopt, std::nullopt};
     options.levels = options_.levels;
     options.premultiplied = premultiplied;
-    options.threads = options_.threads;
-    options.progress = options_.progress.part(from, to);
+    options.run = options_.run.part(from, to);
     return options;
   }
 
-  void decode(const Progress& progress) {
+  void decode(const Run& run) {
     const bool encoded = options_.encoded;
-    for_each_texel(&vectors_, progress, options_.threads, [encoded](float* vector) {
+    for_each_texel(&vectors_, run, [encoded](float* vector) {
       for (int c = 0; c < 3 && encoded; ++c) vector[c] = 2.0F * vector[c] - 1.0F;
       make_unit(vector);
     });
   }
 
   // Removes what least squares overshoots below the surface, and renormalizes.
-  void finish(const Progress& progress, Image* level) {
-    const bool lift = points_below(*level, nullptr, progress) && !map_points_below(progress);
+  void finish(const Run& run, Image* level) {
+    const bool lift = points_below(*level, nullptr, run) && !map_points_below(run);
     const bool encoded = options_.encoded;
-    for_each_texel(level, progress, options_.threads, [lift, encoded](float* vector) {
+    for_each_texel(level, run, [lift, encoded](float* vector) {
       if (lift) vector[2] = std::max(vector[2], 0.0F);
       make_unit(vector);
       for (int c = 0; c < 3 && encoded; ++c) vector[c] = (vector[c] + 1.0F) / 2.0F;
@@ -119,9 +118,9 @@ class NormalFilter {
   }
 
   // Whether any vector points below the surface; with weights, any with a weight above 0.
-  bool points_below(const Image& vectors, const Image* weights, const Progress& progress) const {
+  bool points_below(const Image& vectors, const Image* weights, const Run& run) const {
     std::atomic<bool> found{false};
-    parallel_for(vectors.height, options_.threads, progress, [&](std::int64_t row) {
+    parallel_for(vectors.height, run, [&](std::int64_t row) {
       const int y = static_cast<int>(row);
       for (int x = 0; x < vectors.width && !found.load(std::memory_order_relaxed); ++x) {
         if (!(vectors.texel(x, y)[2] < 0.0F)) continue;
@@ -132,13 +131,13 @@ class NormalFilter {
   }
 
   // Whether a texel of the map that counts points below the surface.
-  bool map_points_below(const Progress& progress) {
+  bool map_points_below(const Run& run) {
     if (!map_points_below_) {
-      map_points_below_ = points_below(vectors_, nullptr, progress);
+      map_points_below_ = points_below(vectors_, nullptr, run);
       if (*map_points_below_ && !surfaces_.empty()) {
-        const Image weights = texel_weights(surfaces_, vectors_.width, vectors_.height,
-                                            options_.wrap, progress, options_.threads);
-        map_points_below_ = points_below(vectors_, &weights, progress);
+        const Image weights =
+            texel_weights(surfaces_, vectors_.width, vectors_.height, options_.wrap, run);
+        map_points_below_ = points_below(vectors_, &weights, run);
       }
     }
     return *map_points_below_;
@@ -154,37 +153,34 @@ class NormalFilter {
     }
     if (needs_surface(means)) fill_unused_texels(&rough);
     check_roughness(rough);
-    for_each_texel(&rough, Progress(), options_.threads,
+    for_each_texel(&rough, Run(options_.run.threads()),
                    [](float* value) { *value = std::clamp(*value, 0.0F, 1.0F); });
-    const Image shown = lookup_means(vectors_.view(), rough.view(), options_.wrap,
-                                     static_cast<float>(kMinNormalLength),
-                                     options_.progress.part(0.65, 0.8), options_.threads);
+    const Image shown =
+        lookup_means(vectors_.view(), rough.view(), options_.wrap,
+                     static_cast<float>(kMinNormalLength), options_.run.part(0.65, 0.8));
     vectors_ = Image();
     rough = Image();
     std::vector<Image> levels;
     for (const Image& level :
          coarser_levels(shown.view(), surfaces_, mipmap_options(means, true, 0.8, 0.95))) {
       Image& rougher = levels.emplace_back(level.width, level.height, 1);
-      parallel_for(level.height, options_.threads, options_.progress.part(0.95, 0.95),
-                   [&](std::int64_t row) {
-                     const int y = static_cast<int>(row);
-                     for (int x = 0; x < level.width; ++x) {
-                       *rougher.texel(x, y) = roughness_of(level.texel(x, y));
-                     }
-                   });
+      parallel_for(level.height, options_.run.part(0.95, 0.95), [&](std::int64_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < level.width; ++x) {
+          *rougher.texel(x, y) = roughness_of(level.texel(x, y));
+        }
+      });
     }
     return levels;
   }
 
   void fill_unused_texels(Image* rough) {
-    const std::vector<unsigned char> used =
-        looked_up_texels(surfaces_, vectors_.width, vectors_.height, options_.wrap,
-                         options_.progress.part(0.5, 0.58), options_.threads);
+    const std::vector<unsigned char> used = looked_up_texels(
+        surfaces_, vectors_.width, vectors_.height, options_.wrap, options_.run.part(0.5, 0.58));
     if (std::find(used.begin(), used.end(), 1) == used.end()) throw_outside();
     const std::vector<float> weights(used.begin(), used.end());
     const auto fill = [&](double from, double to, Image* image) {
-      fill_holes(weights, options_.wrap, image->channels, options_.progress.part(from, to),
-                 options_.threads, image);
+      fill_holes(weights, options_.wrap, image->channels, options_.run.part(from, to), image);
     };
     fill(0.58, 0.63, &vectors_);
     fill(0.63, 0.65, rough);
@@ -193,7 +189,7 @@ class NormalFilter {
   void check_roughness(const Image& rough) const {
     std::vector<int> finite(
         static_cast<std::size_t>(rough.height));  // leading finite values per row
-    parallel_for(rough.height, options_.threads, Progress(), [&](std::int64_t row) {
+    parallel_for(rough.height, Run(options_.run.threads()), [&](std::int64_t row) {
       const float* values = rough.texel(0, static_cast<int>(row));
       while (finite[row] < rough.width && std::isfinite(values[finite[row]])) ++finite[row];
     });

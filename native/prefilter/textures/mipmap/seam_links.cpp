@@ -207,8 +207,8 @@ double gauss_point(double begin, double end, int k) {
 
 }  // namespace
 
-std::vector<SeamEdge> find_seams(const Surface& surface, const Progress& progress) {
-  CancelCheck cancel_check(progress);
+std::vector<SeamEdge> find_seams(const Surface& surface, const Run& run) {
+  CancelCheck cancel_check(run);
   const std::vector<std::int32_t> welded = weld(surface.positions, &cancel_check);
   std::vector<Edge> edges;
   edges.reserve(3 * surface.triangles.size());
@@ -252,11 +252,10 @@ std::vector<SeamEdge> find_seams(const Surface& surface, const Progress& progres
   return seams;
 }
 
-std::vector<SeamEdge> find_seams(const std::vector<const Surface*>& surfaces,
-                                 const Progress& progress) {
+std::vector<SeamEdge> find_seams(const std::vector<const Surface*>& surfaces, const Run& run) {
   std::vector<SeamEdge> seams;
   for (const Surface* surface : surfaces) {
-    const std::vector<SeamEdge> own = find_seams(*surface, progress);
+    const std::vector<SeamEdge> own = find_seams(*surface, run);
     seams.insert(seams.end(), own.begin(), own.end());
   }
   return seams;
@@ -277,8 +276,8 @@ double mean_square_across(const SeamEdge& seam, const ImageView& image, WrapMode
 }
 
 void weigh_seams(const ImageView& image, const std::vector<const Surface*>& surfaces,
-                 WrapModes wrap, const Progress& progress, std::vector<SeamEdge>* seams) {
-  CancelCheck cancel_check(progress);
+                 WrapModes wrap, const Run& run, std::vector<SeamEdge>* seams) {
+  CancelCheck cancel_check(run);
   const double variance = variance_on(surfaces, image, wrap, &cancel_check);
   for (SeamEdge& seam : *seams) {
     cancel_check.step();
@@ -291,8 +290,8 @@ void weigh_seams(const ImageView& image, const std::vector<const Surface*>& surf
 }
 
 std::vector<SeamLink> link_seams(const std::vector<SeamEdge>& seams, int width, int height,
-                                 WrapModes wrap, const Progress& progress) {
-  CancelCheck cancel_check(progress);
+                                 WrapModes wrap, const Run& run) {
+  CancelCheck cancel_check(run);
   std::vector<SeamLink> links;
   double length = 0.0;
   double texels = 0.0;

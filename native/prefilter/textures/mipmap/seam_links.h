@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/solve/nine_point_system.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/geometry/surface.h"
@@ -29,9 +29,8 @@ struct SeamEdge {
 /// length, edges whose two triangles agree, and edges with more than two triangles are not seams.
 /// This and the functions below check for cancellation now and then, without progress; they throw
 /// Error(kCancelled).
-std::vector<SeamEdge> find_seams(const Surface& surface, const Progress& progress);
-std::vector<SeamEdge> find_seams(const std::vector<const Surface*>& surfaces,
-                                 const Progress& progress);
+std::vector<SeamEdge> find_seams(const Surface& surface, const Run& run);
+std::vector<SeamEdge> find_seams(const std::vector<const Surface*>& surfaces, const Run& run);
 
 /// Mean along a seam, summed over the channels, of the squared difference between the bilinear
 /// lookups on both sides.
@@ -52,13 +51,13 @@ struct SeamLink {
 /// materials meet. The scale falls from 1 to 0 while the root mean square difference along a seam
 /// grows from 0.1 to 0.12 standard deviations of the image, estimated from some thousand points.
 void weigh_seams(const ImageView& image, const std::vector<const Surface*>& surfaces,
-                 WrapModes wrap, const Progress& progress, std::vector<SeamEdge>* seams);
+                 WrapModes wrap, const Run& run, std::vector<SeamEdge>* seams);
 
 /// Links along all seams for a level of width x height texels. Their sum of squares, times length,
 /// is the exact integral: three-point Gauss rule between the points where either side crosses a
 /// texel center, between which lookups are quadratic.
 std::vector<SeamLink> link_seams(const std::vector<SeamEdge>& seams, int width, int height,
-                                 WrapModes wrap, const Progress& progress);
+                                 WrapModes wrap, const Run& run);
 
 /// Converts links to the texel indices of a level's system, each weighted by its strip's area times
 /// `weight`.

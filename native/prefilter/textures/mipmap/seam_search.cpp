@@ -101,8 +101,8 @@ double step_back_within(const std::vector<LaneValues>& within, const std::functi
 }
 
 template <typename Entry>
-void fit_within(double square, const LinkedFit& fit, const Progress& progress,
-                NinePointSystem<Entry>* system, SeamBudget* budget) {
+void fit_within(double square, const LinkedFit& fit, const Run& run, NinePointSystem<Entry>* system,
+                SeamBudget* budget) {
   const auto size = static_cast<std::ptrdiff_t>(system->size());
   const double least = fit.error();
   const double rise = allowed_rise(*budget, least, square);
@@ -120,7 +120,7 @@ void fit_within(double square, const LinkedFit& fit, const Progress& progress,
   while (!search.done()) {
     const double next = 0.5 * (fraction + 1.0);
     budget->weight = search.weight();
-    fit.solve(budget->weight, progress.part(fraction, next));
+    fit.solve(budget->weight, run.part(fraction, next));
     fraction = next;
     search.report(spent());
     if (!search.is_over()) keep(budget->weight);
@@ -132,9 +132,9 @@ void fit_within(double square, const LinkedFit& fit, const Progress& progress,
                        : share * budget->weight;
 }
 
-template void fit_within(double, const LinkedFit&, const Progress&, NinePointSystem<float>*,
+template void fit_within(double, const LinkedFit&, const Run&, NinePointSystem<float>*,
                          SeamBudget*);
-template void fit_within(double, const LinkedFit&, const Progress&, NinePointSystem<LaneValues>*,
+template void fit_within(double, const LinkedFit&, const Run&, NinePointSystem<LaneValues>*,
                          SeamBudget*);
 template double step_back_within(const std::vector<LaneValues>&, const std::function<double()>&,
                                  NinePointSystem<float>*);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/solve/nine_point_system.h"
 
 namespace prefilter {
@@ -57,7 +57,7 @@ struct SeamBudget {
 /// A fit with links. Its result is the texels of a system.
 struct LinkedFit {
   /// Moves the texels from their current values to the fit with this weight.
-  std::function<void(double, const Progress&)> solve;
+  std::function<void(double, const Run&)> solve;
   /// Squared error of the current texels.
   std::function<double()> error;
 };
@@ -67,8 +67,8 @@ struct LinkedFit {
 /// fits: the error is convex, so it stays within the budget. `square` is the error of all-zero
 /// texels, which bounds rounding errors.
 template <typename Entry>
-void fit_within(double square, const LinkedFit& fit, const Progress& progress,
-                NinePointSystem<Entry>* system, SeamBudget* budget);
+void fit_within(double square, const LinkedFit& fit, const Run& run, NinePointSystem<Entry>* system,
+                SeamBudget* budget);
 
 /// Moves the texels of a system toward `within`, texels within the budget, just far enough to be
 /// within it too. `spent` returns the share of the budget that the current texels use. Returns the

@@ -14,7 +14,7 @@ namespace prefilter {
 
 std::vector<double> seam_contrast(const std::vector<ImageView>& levels,
                                   const std::vector<const Surface*>& surfaces, WrapModes wrap,
-                                  const Progress& progress) {
+                                  const Run& run) {
   if (levels.empty()) throw_invalid("levels: none were given; at least one is needed");
   if (surfaces.empty()) throw_invalid("surface: none was given; at least one is needed");
   const int channels = levels[0].channels;
@@ -28,12 +28,11 @@ std::vector<double> seam_contrast(const std::vector<ImageView>& levels,
   for (std::size_t k = 0; k < levels.size(); ++k) {
     check_view(levels[k], "levels: level " + std::to_string(k));
   }
-  const std::vector<SeamEdge> seams = find_seams(surfaces, progress.part(0.0, 0.0));
+  const std::vector<SeamEdge> seams = find_seams(surfaces, run.part(0.0, 0.0));
   std::vector<double> contrasts;
   for (std::size_t k = 0; k < levels.size(); ++k) {
-    const Progress part =
-        progress.part(static_cast<double>(k) / static_cast<double>(levels.size()),
-                      static_cast<double>(k + 1) / static_cast<double>(levels.size()));
+    const Run part = run.part(static_cast<double>(k) / static_cast<double>(levels.size()),
+                              static_cast<double>(k + 1) / static_cast<double>(levels.size()));
     double squares = 0.0;
     double length = 0.0;
     for (std::size_t i = 0; i < seams.size(); ++i) {
@@ -47,7 +46,7 @@ std::vector<double> seam_contrast(const std::vector<ImageView>& levels,
     }
     contrasts.push_back(length > 0.0 ? std::sqrt(squares / (length * channels)) : 0.0);
   }
-  progress.report(1.0);
+  run.report(1.0);
   return contrasts;
 }
 

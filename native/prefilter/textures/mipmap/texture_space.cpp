@@ -15,17 +15,16 @@ constexpr float kMinKernelWeight = 0.1F;
 }  // namespace
 
 Image filter_level(const ImageView& image, int level, const Kernel& kernel, WrapModes wrap,
-                   const Progress& progress, int threads) {
+                   const Run& run) {
   return filter_separably(image, level_size(image.width, level), level_size(image.height, level),
-                          kernel, wrap, progress, threads);
+                          kernel, wrap, run);
 }
 
 Image filter_covered_level(const ImageView& image, const std::vector<unsigned char>& covered,
-                           int level, const Kernel& kernel, WrapModes wrap,
-                           const Progress& progress, int threads) {
+                           int level, const Kernel& kernel, WrapModes wrap, const Run& run) {
   Image masked(image.width, image.height, image.channels);
   Image mask(image.width, image.height, 1);
-  parallel_for(image.height, threads, progress.part(0.0, 0.1), [&](std::int64_t row) {
+  parallel_for(image.height, run.part(0.0, 0.1), [&](std::int64_t row) {
     const std::size_t begin = static_cast<std::size_t>(row) * image.width;
     for (std::size_t i = begin; i < begin + image.width; ++i) {
       if (covered[i] == 0) continue;
@@ -39,8 +38,7 @@ Image filter_covered_level(const ImageView& image, const std::vector<unsigned ch
   const int width = level_size(image.width, level);
   const int height = level_size(image.height, level);
   const auto reduce = [&](const Image& source, const Kernel& with, double from, double to) {
-    return filter_separably(source.view(), width, height, with, wrap, progress.part(from, to),
-                            threads);
+    return filter_separably(source.view(), width, height, with, wrap, run.part(from, to));
   };
   Image sums = reduce(masked, kernel, 0.1, 0.4);
   Image weights = reduce(mask, kernel, 0.4, 0.5);
@@ -54,7 +52,7 @@ Image filter_covered_level(const ImageView& image, const std::vector<unsigned ch
       sums.data[at] = (box ? box_sums : sums).data[at] / weight;
     }
   }
-  fill_holes(box_weights.data, wrap, image.channels, progress.part(0.9, 1.0), threads, &sums);
+  fill_holes(box_weights.data, wrap, image.channels, run.part(0.9, 1.0), &sums);
   return sums;
 }
 

@@ -27,31 +27,32 @@ void check(const std::vector<const Surface*>& surfaces, int width, int height) {
 }  // namespace
 
 Image texel_weights(const std::vector<const Surface*>& surfaces, int width, int height,
-                    WrapModes wrap, const Progress& progress, int threads) {
+                    WrapModes wrap, const Run& run) {
   check(surfaces, width, height);
+  const Stages stages(run, {1, 4});
   const TexelTriangles triangles =
-      map_to_texels(surfaces, width, height, wrap, MassOf::kArea, progress.part(0.0, 0.2), threads);
+      map_to_texels(surfaces, width, height, wrap, MassOf::kArea, stages[0]);
   check_mapped(triangles);
   Image weights(width, height, 1);
-  weights.data = texel_masses(triangles, progress.part(0.2, 1.0), threads);
+  weights.data = texel_masses(triangles, stages[1]);
   return weights;
 }
 
 Image fill_unused(const ImageView& image, const std::vector<const Surface*>& surfaces,
-                  WrapModes wrap, const Progress& progress, int threads) {
+                  WrapModes wrap, const Run& run) {
   check_channels(image);
   check(surfaces, image.width, image.height);
+  const Stages stages(run, {3, 2});
   const std::vector<unsigned char> read =
-      looked_up_texels(surfaces, image.width, image.height, wrap, progress.part(0.0, 0.6), threads);
+      looked_up_texels(surfaces, image.width, image.height, wrap, stages[0]);
   if (std::find(read.begin(), read.end(), 1) == read.end()) throw_outside();
   const std::vector<float> weights(read.begin(), read.end());
   Image filled(image);
-  fill_holes(weights, wrap, image.channels, progress.part(0.6, 1.0), threads, &filled);
+  fill_holes(weights, wrap, image.channels, stages[1], &filled);
   return filled;
 }
 
-Image fill_transparent(const ImageView& image, WrapModes wrap, const Progress& progress,
-                       int threads) {
+Image fill_transparent(const ImageView& image, WrapModes wrap, const Run& run) {
   if (image.channels < 2 || image.channels > kMaxChannels) {
     throw_invalid("image: " + std::to_string(image.channels) +
                   " channels; 2 to 4 are allowed, the last one is alpha");
@@ -64,7 +65,7 @@ Image fill_transparent(const ImageView& image, WrapModes wrap, const Progress& p
     // NaN counts as a weight of 0.
     weights[i] = alpha > 0.0F ? std::min(alpha, 1.0F) : 0.0F;
   }
-  fill_holes(weights, wrap, colors, progress, threads, &filled);
+  fill_holes(weights, wrap, colors, run, &filled);
   return filled;
 }
 

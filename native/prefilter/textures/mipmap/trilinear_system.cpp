@@ -63,8 +63,7 @@ void TrilinearSystem<C>::expect_finer_means() {
 }
 
 template <int C>
-void TrilinearSystem<C>::prepare(double footprint, const SolveOptions& options,
-                                 const Progress& progress) {
+void TrilinearSystem<C>::prepare(double footprint, const SolveOptions& options, const Run& run) {
   TargetSquares squares = squares_;
   for (int level = 1; level <= last_level_; ++level) {
     BilinearSystem<C>& system = *systems_[level - 1];
@@ -72,7 +71,7 @@ void TrilinearSystem<C>::prepare(double footprint, const SolveOptions& options,
     // The equations of a level are divided by 2/3. For level 1 the term 1/6 A_1,0 times the image
     // is known: it is 1/6 of the image's right side.
     system.prepare(target_shares(std::min(kMeanFootprint * footprint, kMaxFootprint)),
-                   {.times = 1.5, .known = level == 1 ? 1.0 / 6.0 : 0.0}, progress);
+                   {.times = 1.5, .known = level == 1 ? 1.0 / 6.0 : 0.0}, run);
     system.system().swap_right_side(&fixed_.emplace_back());
     squares = system.own_squares();
   }
@@ -84,24 +83,23 @@ void TrilinearSystem<C>::prepare(double footprint, const SolveOptions& options,
 }
 
 template <int C>
-int TrilinearSystem<C>::solve_level(int level, const SolveOptions& options,
-                                    const Progress& progress) {
+int TrilinearSystem<C>::solve_level(int level, const SolveOptions& options, const Run& run) {
   NinePointSystem<float>& system = systems_[level - 1]->system();
   right_ = fixed_[level - 1];
   couplings_[level - 1].subtract_coarse(system, systems_[level]->system(), kOffDiagonal,
-                                        options.threads, &right_);
+                                        run.threads(), &right_);
   if (level > 1) {
     couplings_[level - 2].subtract_fine(systems_[level - 2]->system(), system, kOffDiagonal,
-                                        options.threads, &right_);
+                                        run.threads(), &right_);
   }
   system.swap_right_side(&right_);
-  const int sweeps = system.solve(options, progress);
+  const int sweeps = system.solve(options, run);
   system.swap_right_side(&right_);
   return sweeps;
 }
 
 template <int C>
-void TrilinearSystem<C>::iterate_levels(const SolveOptions& options, const Progress& progress) {
+void TrilinearSystem<C>::iterate_levels(const SolveOptions& options, const Run& run) {
   SolveOptions few = options;
   few.max_sweeps = kSweepsPerLevelRound;
   // Whether a level moved when it was last solved. A level is solved again only after a neighbor
@@ -113,9 +111,8 @@ void TrilinearSystem<C>::iterate_levels(const SolveOptions& options, const Progr
   };
   for (int round = 0; round < kMaxLevelRounds && !settled(); ++round) {
     for (int level = 1; level < last_level_; ++level) {
-      const Progress part =
-          progress.part((round + 1.0 - std::ldexp(1.0, 1 - level)) / kMaxLevelRounds,
-                        (round + 1.0 - std::ldexp(1.0, -level)) / kMaxLevelRounds);
+      const Run part = run.part((round + 1.0 - std::ldexp(1.0, 1 - level)) / kMaxLevelRounds,
+                                (round + 1.0 - std::ldexp(1.0, -level)) / kMaxLevelRounds);
       part.report(0.0);
       if (!moves[level - 1] && !moves[level] && !moves[level + 1]) continue;
       moves[level] = solve_level(level, few, part) > 1;
@@ -125,9 +122,9 @@ void TrilinearSystem<C>::iterate_levels(const SolveOptions& options, const Progr
 
 template <int C>
 void TrilinearSystem<C>::fit_links(const SolveOptions& options, const SeamBudget& budget,
-                                   const Progress& progress) {
+                                   const Run& run) {
   const auto error = [&](int level) {
-    return systems_[level - 1]->squared_error(budget.first_channel, options.threads);
+    return systems_[level - 1]->squared_error(budget.first_channel, run.threads());
   };
   std::vector<std::vector<LaneValues>> alone(last_level_);
   std::vector<double> least(last_level_);
@@ -139,11 +136,11 @@ void TrilinearSystem<C>::fit_links(const SolveOptions& options, const SeamBudget
     }
     least[level - 1] = error(level);
     if (!systems_[level - 1]->has_links()) continue;
-    const Progress part = progress.part(0.7 * (1.0 - std::ldexp(1.0, 1 - level)),
-                                        0.7 * (1.0 - std::ldexp(1.0, -level)));
+    const Run part =
+        run.part(0.7 * (1.0 - std::ldexp(1.0, 1 - level)), 0.7 * (1.0 - std::ldexp(1.0, -level)));
     SolveOptions linked = options;
     linked.max_sweeps = systems_[level - 1]->linked_sweeps();
-    const LinkedFit fit{[&](double weight, const Progress& fitting) {
+    const LinkedFit fit{[&](double weight, const Run& fitting) {
                           systems_[level - 1]->weigh_links(weight);
                           solve_level(level, linked, fitting);
                         },
@@ -153,7 +150,7 @@ void TrilinearSystem<C>::fit_links(const SolveOptions& options, const SeamBudget
     systems_[level - 1]->weigh_links(level_budget.weight);
   }
   // Levels that moved affect their neighbors.
-  iterate_levels(options, progress.part(0.7, 1.0));
+  iterate_levels(options, run.part(0.7, 1.0));
   for (int level = 1; level < last_level_; ++level) {
     const double square = systems_[level - 1]->target_square(budget.first_channel);
     const double rise = allowed_rise(budget, least[level - 1], square);
@@ -167,13 +164,14 @@ void TrilinearSystem<C>::fit_links(const SolveOptions& options, const SeamBudget
 
 template <int C>
 auto TrilinearSystem<C>::solve(double footprint, const SolveOptions& options, SeamBudget budget,
-                               const Progress& progress)
+                               const Run& run)
     -> std::vector<typename BilinearSystem<C>::Solution> {
-  prepare(footprint, options, progress);
+  prepare(footprint, options, run);
   const bool has_links = std::any_of(systems_.begin(), systems_.end(),
                                      [](const auto& system) { return system->has_links(); });
-  iterate_levels(options, has_links ? progress.part(0.0, 0.3) : progress);
-  if (has_links) fit_links(options, budget, progress.part(0.3, 1.0));
+  const Stages stages(run, {3, 7});
+  iterate_levels(options, has_links ? stages[0] : run);
+  if (has_links) fit_links(options, budget, stages[1]);
   std::vector<typename BilinearSystem<C>::Solution> levels;
   for (const std::unique_ptr<BilinearSystem<C>>& system : systems_) {
     levels.push_back(system->take_solution());

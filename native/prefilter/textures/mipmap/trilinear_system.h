@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/textures/mipmap/bilinear_system.h"
 #include "prefilter/textures/mipmap/level_coupling.h"
@@ -34,14 +34,14 @@ class TrilinearSystem {
   void expect_finer_means();
   void add_finer_means(const MomentBlock<C>& block) { systems_.front()->add_finer_means(block); }
   /// Requires all blocks.
-  void add_coupled_means(const Progress& progress, int threads) {
-    prefilter::add_coupled_means(couplings_, systems_, progress, threads);
+  void add_coupled_means(const Run& run) {
+    prefilter::add_coupled_means(couplings_, systems_, run);
   }
 
   /// BilinearSystem::add_links for a level.
   void add_links(int level, const std::vector<SeamLink>& links, double texels_by_area,
-                 const Progress& progress) {
-    systems_[level - 1]->add_links(links, texels_by_area, progress);
+                 const Run& run) {
+    systems_[level - 1]->add_links(links, texels_by_area, run);
   }
   /// BilinearSystem::set_squares for level 1.
   void set_squares(const TargetSquares& squares) { squares_ = squares; }
@@ -51,19 +51,18 @@ class TrilinearSystem {
   /// each level, at its own mip value, rises by at most the budget. Can be called only once.
   std::vector<typename BilinearSystem<C>::Solution> solve(double footprint,
                                                           const SolveOptions& options,
-                                                          SeamBudget budget,
-                                                          const Progress& progress);
+                                                          SeamBudget budget, const Run& run);
 
  private:
   using RightSide = std::vector<LaneValues>;
 
-  void prepare(double footprint, const SolveOptions& options, const Progress& progress);
+  void prepare(double footprint, const SolveOptions& options, const Run& run);
   // Solves for one level with the others fixed. Returns the number of sweeps.
-  int solve_level(int level, const SolveOptions& options, const Progress& progress);
+  int solve_level(int level, const SolveOptions& options, const Run& run);
   // Iterates over the levels until none moves.
-  void iterate_levels(const SolveOptions& options, const Progress& progress);
+  void iterate_levels(const SolveOptions& options, const Run& run);
   // Determines the weights of the links of all levels, and solves with them.
-  void fit_links(const SolveOptions& options, const SeamBudget& budget, const Progress& progress);
+  void fit_links(const SolveOptions& options, const SeamBudget& budget, const Run& run);
 
   int last_level_;
   std::vector<std::unique_ptr<BilinearSystem<C>>> systems_;  // of level l at [l - 1]

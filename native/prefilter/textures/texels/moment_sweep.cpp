@@ -318,14 +318,14 @@ class Sweep {
   using Visit = std::function<void(const MomentBlock<C>&)>;
 
   Sweep(const TexelTriangles& triangles, const TexelSource& image, WrapModes wrap,
-        const SweepOptions& options, const Progress& progress, const Visit& visit)
+        const SweepOptions& options, const Run& run, const Visit& visit)
       : triangles_(triangles),
         image_(image),
         wrap_(wrap),
         options_(options),
         visit_(visit),
-        progress_(progress),
-        tiles_(triangles, progress.part(0.0, 0.1), options.threads),
+        run_(run),
+        tiles_(triangles, run.part(0.0, 0.1)),
         tile_levels_(last_tile_level(image.width, image.height)),
         x_cells_(image.width, full_level_count(image.width, image.height), Tiles::kSize,
                  tile_levels_ + 1),
@@ -335,7 +335,7 @@ class Sweep {
   }
 
   void run() {
-    tiles_.for_each_apart(options_.threads, progress_.part(0.1, 1.0), [this](std::int64_t tile) {
+    tiles_.for_each_apart(run_.part(0.1, 1.0), [this](std::int64_t tile) {
       std::unique_ptr<Workspace<C>> workspace = pool_.take();
       sweep_tile(tile, workspace.get());
       pool_.give_back(std::move(workspace));
@@ -526,7 +526,7 @@ class Sweep {
   WrapModes wrap_;
   SweepOptions options_;
   const Visit& visit_;
-  const Progress& progress_;
+  const Run& run_;
   Tiles tiles_;
   int tile_levels_;
   AxisCells x_cells_;
@@ -546,24 +546,24 @@ std::int64_t sweep_block_count(int width, int height) {
 
 template <int C>
 void sweep_moments(const TexelTriangles& triangles, const TexelSource& image, WrapModes wrap,
-                   const SweepOptions& options, const Progress& progress,
+                   const SweepOptions& options, const Run& run,
                    const std::function<void(const MomentBlock<C>&)>& visit) {
   assert(image.channels == C);
   assert(options.last_level < full_level_count(image.width, image.height));
-  Sweep<C>(triangles, image, wrap, options, progress, visit).run();
+  Sweep<C>(triangles, image, wrap, options, run, visit).run();
 }
 
 template void sweep_moments<1>(const TexelTriangles&, const TexelSource&, WrapModes,
-                               const SweepOptions&, const Progress&,
+                               const SweepOptions&, const Run&,
                                const std::function<void(const MomentBlock<1>&)>&);
 template void sweep_moments<2>(const TexelTriangles&, const TexelSource&, WrapModes,
-                               const SweepOptions&, const Progress&,
+                               const SweepOptions&, const Run&,
                                const std::function<void(const MomentBlock<2>&)>&);
 template void sweep_moments<3>(const TexelTriangles&, const TexelSource&, WrapModes,
-                               const SweepOptions&, const Progress&,
+                               const SweepOptions&, const Run&,
                                const std::function<void(const MomentBlock<3>&)>&);
 template void sweep_moments<4>(const TexelTriangles&, const TexelSource&, WrapModes,
-                               const SweepOptions&, const Progress&,
+                               const SweepOptions&, const Run&,
                                const std::function<void(const MomentBlock<4>&)>&);
 
 }  // namespace prefilter

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/geometry/moments/cell_moments.h"
 #include "prefilter/geometry/texels/texel_triangles.h"
 #include "prefilter/textures/reader.h"
@@ -116,7 +116,6 @@ struct SweepOptions {
   // Another image of the same size and channels, whose moments are returned in MomentBlock::means;
   // not supported with kSrgbAfter.
   const Image* means = nullptr;
-  int threads = 0;
 };
 
 /// Number of different values of MomentBlock::index.
@@ -128,7 +127,7 @@ std::int64_t sweep_block_count(int width, int height);
 /// channels.
 template <int C>
 void sweep_moments(const TexelTriangles& triangles, const TexelSource& image, WrapModes wrap,
-                   const SweepOptions& options, const Progress& progress,
+                   const SweepOptions& options, const Run& run,
                    const std::function<void(const MomentBlock<C>&)>& visit);
 
 }  // namespace prefilter

@@ -47,7 +47,7 @@ void check(const std::vector<ImageView>& levels, const std::vector<const Surface
                     std::to_string(width) + " x " + std::to_string(height) + " of " +
                     std::to_string(levels[0].channels) + " are needed");
     }
-    if (!all_filterable(levels[k], options.progress.part(0.0, 0.01), options.threads)) {
+    if (!all_filterable(levels[k], options.run.part(0.0, 0.01))) {
       throw_invalid("levels: level " + std::to_string(k) +
                     " has a value that is not finite, or beyond 1e30");
     }
@@ -72,8 +72,7 @@ std::unique_ptr<FilteredImage> filtered(const TexelSource& level, bool is_multip
       level, all,
       FilteredImage::Options{.alpha = has_alpha ? std::optional(kMaxChannels - 1) : std::nullopt,
                              .stays_opaque = !is_multiplied,
-                             .threads = options.threads,
-                             .progress = Progress()});
+                             .run = Run()});
 }
 
 SolveOptions solve_options(const FilteredImage& image, const ViewFitOptions& options) {
@@ -103,7 +102,7 @@ std::vector<double> start_weights(const std::vector<View>& views, std::size_t le
 // Renders all views in bands of rows, so that each task needs little memory.
 std::vector<ViewPixels> render_views(const std::vector<View>& views,
                                      const std::vector<ImageView>& levels,
-                                     const ViewFitOptions& options, const Progress& progress) {
+                                     const ViewFitOptions& options, const Run& run) {
   constexpr std::int64_t kMaxSamplesPerTask = 1 << 18;
   struct Band {
     const View* view;
@@ -121,12 +120,10 @@ std::vector<ViewPixels> render_views(const std::vector<View>& views,
     }
   }
   std::vector<ViewPixels> rendered(tasks.size());
-  parallel_for(static_cast<std::int64_t>(tasks.size()), options.threads, progress,
-               [&](std::int64_t k) {
-                 const auto& [view, begin, end] = tasks[static_cast<std::size_t>(k)];
-                 rendered[static_cast<std::size_t>(k)] =
-                     view_pixels(*view, begin, end, levels, options.wrap);
-               });
+  parallel_for(static_cast<std::int64_t>(tasks.size()), run, [&](std::int64_t k) {
+    const auto& [view, begin, end] = tasks[static_cast<std::size_t>(k)];
+    rendered[static_cast<std::size_t>(k)] = view_pixels(*view, begin, end, levels, options.wrap);
+  });
   return rendered;
 }
 
@@ -148,18 +145,17 @@ std::vector<Image> fit_to_views(const std::vector<ImageView>& levels,
   const std::vector<View> views = plan_views(surfaces, image.width, image.height,
                                              static_cast<int>(levels.size()), options.effort);
   std::vector<ViewPixels> rendered =
-      render_views(views, start, options, options.progress.part(0.01, 0.3));
+      render_views(views, start, options, options.run.part(0.01, 0.3));
   ViewSystem system(start, start_weights(views, levels.size()), std::move(rendered), options,
-                    options.progress.part(0.3, 0.4));
+                    options.run.part(0.3, 0.4));
   std::vector<Image> fitted =
-      system.solve(solve_options(*filtered_levels[0], options), options.progress.part(0.4, 0.98));
+      system.solve(solve_options(*filtered_levels[0], options), options.run.part(0.4, 0.98));
   const ValueRange range = range_of(options.bounds);
   for (Image& level : fitted) {
-    filtered_levels[0]->divide_by_alpha(options.wrap, options.progress.part(0.98, 0.99),
-                                        options.threads, &level);
+    filtered_levels[0]->divide_by_alpha(options.wrap, options.run.part(0.98, 0.99), &level);
     for (float& value : level.data) value = std::clamp(value, range.low, range.high);
   }
-  options.progress.report(1.0);
+  options.run.report(1.0);
   return fitted;
 }
 

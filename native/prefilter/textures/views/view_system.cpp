@@ -62,11 +62,11 @@ void ViewSystem::for_texels(const ViewPixel& pixel, bool is_anisotropic, const V
 
 ViewSystem::ViewSystem(const std::vector<ImageView>& levels,
                        const std::vector<double>& start_weights, std::vector<ViewPixels> seen,
-                       const ViewFitOptions& options, const Progress& progress)
+                       const ViewFitOptions& options, const Run& run)
     : levels_(levels),
       wrap_(options.wrap),
       lookups_(options.lookups),
-      threads_(options.threads),
+      threads_(options.run.threads()),
       seen_(std::move(seen)) {
   begins_ = {0};
   for (const ImageView& level : levels) {
@@ -85,9 +85,10 @@ ViewSystem::ViewSystem(const std::vector<ImageView>& levels,
   }
   is_free_.assign(start_.size(), {all_lanes(1.0F)});
   make_slices();
-  scale_steadiness(options.steadiness, progress.part(0.0, 0.3));
-  compute_diagonal(start_weights, progress.part(0.3, 0.6));
-  right_side_ = sum_slices(progress.part(0.6, 1.0), [&](const ViewPixels& of_view, Texels* sums) {
+  const Stages stages(run, {3, 3, 4});
+  scale_steadiness(options.steadiness, stages[0]);
+  compute_diagonal(start_weights, stages[1]);
+  right_side_ = sum_slices(stages[2], [&](const ViewPixels& of_view, Texels* sums) {
     scatter(
         of_view,
         [&](const ViewPixel& p, bool is_anisotropic) { return residual_of(p, is_anisotropic); },
@@ -130,7 +131,7 @@ Lanes ViewSystem::residual_of(const ViewPixel& pixel, bool is_anisotropic) const
 }
 
 template <typename Add>
-auto ViewSystem::sum_slices(const Progress& progress, const Add& add) const -> Texels {
+auto ViewSystem::sum_slices(const Run& run, const Add& add) const -> Texels {
   const std::size_t count = slices_.size() - 1;
   std::vector<Texels> slices(count);
   for (Texels& sums : slices) sums.resize(start_.size());
@@ -138,7 +139,7 @@ auto ViewSystem::sum_slices(const Progress& progress, const Add& add) const -> T
   std::vector<std::size_t> next(slices_.begin(), slices_.end() - 1);
   bool is_done = false;
   while (!is_done) {
-    parallel_for(static_cast<std::int64_t>(count), threads_, progress, [&](std::int64_t k) {
+    parallel_for(static_cast<std::int64_t>(count), run, [&](std::int64_t k) {
       const auto s = static_cast<std::size_t>(k);
       std::size_t pixels = 0;
       while (next[s] < slices_[s + 1] && pixels < kPixelsPerBatch) {
@@ -151,15 +152,14 @@ auto ViewSystem::sum_slices(const Progress& progress, const Add& add) const -> T
     for (std::size_t s = 0; s < count; ++s) is_done = is_done && next[s] == slices_[s + 1];
   }
   const auto texels = static_cast<std::int64_t>(start_.size());
-  parallel_ranges(texels, kTexelsPerTask, threads_, progress,
-                  [&](std::int64_t begin, std::int64_t end) {
-                    for (std::size_t s = 1; s < count; ++s) {
-                      for (std::int64_t j = begin; j < end; ++j) {
-                        const auto at = static_cast<std::size_t>(j);
-                        slices[0][at].v += slices[s][at].v;
-                      }
-                    }
-                  });
+  parallel_ranges(texels, kTexelsPerTask, run, [&](std::int64_t begin, std::int64_t end) {
+    for (std::size_t s = 1; s < count; ++s) {
+      for (std::int64_t j = begin; j < end; ++j) {
+        const auto at = static_cast<std::size_t>(j);
+        slices[0][at].v += slices[s][at].v;
+      }
+    }
+  });
   return std::move(slices[0]);
 }
 
@@ -192,10 +192,10 @@ void ViewSystem::scatter(const ViewPixels& seen, const Value& value, Texels* sum
 }
 
 // Scales the weight of flicker by the ratio of squared errors to squared changes at the start.
-void ViewSystem::scale_steadiness(double steadiness, const Progress& progress) {
+void ViewSystem::scale_steadiness(double steadiness, const Run& run) {
   if (!(steadiness > 0.0)) return;
   std::vector<std::array<double, 2>> sums(seen_.size());
-  parallel_for(static_cast<std::int64_t>(seen_.size()), threads_, progress, [&](std::int64_t k) {
+  parallel_for(static_cast<std::int64_t>(seen_.size()), run, [&](std::int64_t k) {
     const auto at = static_cast<std::size_t>(k);
     const auto add = [&](std::size_t which, Lanes value, float share) {
       for (int c = 0; c < kMaxChannels; ++c) {
@@ -228,9 +228,8 @@ void ViewSystem::scale_steadiness(double steadiness, const Progress& progress) {
                                                      : (change > 0.0 ? kMaxScale : 0.0)));
 }
 
-void ViewSystem::compute_diagonal(const std::vector<double>& start_weights,
-                                  const Progress& progress) {
-  const Texels squares = sum_slices(progress, [&](const ViewPixels& of_view, Texels* sums) {
+void ViewSystem::compute_diagonal(const std::vector<double>& start_weights, const Run& run) {
+  const Texels squares = sum_slices(run, [&](const ViewPixels& of_view, Texels* sums) {
     for_lookup_kinds([&](bool is_anisotropic, float share) {
       const float weight = share * static_cast<float>(of_view.weight) * (1.0F + steadiness_);
       for (const ViewPixel& pixel : of_view.pixels) {
@@ -264,7 +263,7 @@ void ViewSystem::compute_diagonal(const std::vector<double>& start_weights,
 auto ViewSystem::dot(const Texels& a, const Texels& b) const -> Sums {
   const auto count = static_cast<std::int64_t>(a.size());
   std::vector<Sums> sums(static_cast<std::size_t>(range_count(count, kTexelsPerTask)));
-  parallel_ranges(count, kTexelsPerTask, threads_, {}, [&](std::int64_t begin, std::int64_t end) {
+  parallel_ranges(count, kTexelsPerTask, Run(threads_), [&](std::int64_t begin, std::int64_t end) {
     Sums& sum = sums[static_cast<std::size_t>(begin / kTexelsPerTask)];
     for (std::int64_t j = begin; j < end; ++j) {
       const auto at = static_cast<std::size_t>(j);
@@ -280,9 +279,9 @@ auto ViewSystem::dot(const Texels& a, const Texels& b) const -> Sums {
   return total;
 }
 
-void ViewSystem::iterate(int steps, Texels* texels, const Progress& progress) const {
+void ViewSystem::iterate(int steps, Texels* texels, const Run& run) const {
   const std::size_t count = start_.size();
-  const auto product = [&](const Texels& of, const Progress& part) {
+  const auto product = [&](const Texels& of, const Run& part) {
     Texels sums = sum_slices(part, [&](const ViewPixels& of_view, Texels* slice) {
       scatter(
           of_view,
@@ -296,7 +295,7 @@ void ViewSystem::iterate(int steps, Texels* texels, const Progress& progress) co
     }
     return sums;
   };
-  Texels residual = product(*texels, progress.part(0.0, 1.0 / (steps + 1)));
+  Texels residual = product(*texels, run.part(0.0, 1.0 / (steps + 1)));
   Texels scaled(count);
   const auto scale = [&] {
     for (std::size_t j = 0; j < count; ++j) {
@@ -311,7 +310,7 @@ void ViewSystem::iterate(int steps, Texels* texels, const Progress& progress) co
   Sums size = dot(residual, scaled);
   for (int step = 0; step < steps; ++step) {
     const Texels image =
-        product(direction, progress.part((step + 1.0) / (steps + 1), (step + 2.0) / (steps + 1)));
+        product(direction, run.part((step + 1.0) / (steps + 1), (step + 2.0) / (steps + 1)));
     const Sums across = dot(direction, image);
     Lanes length{};
     for (std::size_t c = 0; c < kMaxChannels; ++c) {
@@ -334,7 +333,7 @@ void ViewSystem::iterate(int steps, Texels* texels, const Progress& progress) co
   }
 }
 
-std::vector<Image> ViewSystem::solve(const SolveOptions& options, const Progress& progress) {
+std::vector<Image> ViewSystem::solve(const SolveOptions& options, const Run& run) {
   Texels change_from_start(start_.size());
   Lanes low{};
   Lanes high{};
@@ -359,9 +358,10 @@ std::vector<Image> ViewSystem::solve(const SolveOptions& options, const Progress
       change_from_start[j].v = within - start_[j].v;
     }
   };
-  iterate(kFirstIterations, &change_from_start, progress.part(0.0, 0.7));
+  const Stages stages(run, {7, 3});
+  iterate(kFirstIterations, &change_from_start, stages[0]);
   clip();
-  iterate(kBoundedIterations, &change_from_start, progress.part(0.7, 1.0));
+  iterate(kBoundedIterations, &change_from_start, stages[1]);
   clip();
   std::vector<Image> levels;
   for (std::size_t level = 1; level < levels_.size(); ++level) {

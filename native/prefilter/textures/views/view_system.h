@@ -10,7 +10,7 @@
 
 #include "prefilter/base/image.h"
 #include "prefilter/base/lanes.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/solve/nine_point_system.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/textures/fit_to_views.h"
@@ -28,11 +28,11 @@ class ViewSystem {
   /// `levels` includes level 0, which stays fixed. `start_weights` has one entry per level,
   /// relative to the mean of the diagonal there.
   ViewSystem(const std::vector<ImageView>& levels, const std::vector<double>& start_weights,
-             std::vector<ViewPixels> seen, const ViewFitOptions& options, const Progress& progress);
+             std::vector<ViewPixels> seen, const ViewFitOptions& options, const Run& run);
 
   /// Solves without bounds, clips to the ranges, and continues with the texels at their bounds
   /// fixed.
-  std::vector<Image> solve(const SolveOptions& options, const Progress& progress);
+  std::vector<Image> solve(const SolveOptions& options, const Run& run);
 
  private:
   using Texels = std::vector<LaneValues>;
@@ -54,16 +54,16 @@ class ViewSystem {
   // Calls add(seen, sums) for all views, in parallel slices with sums of their own, and returns the
   // total.
   template <typename Add>
-  Texels sum_slices(const Progress& progress, const Add& add) const;
+  Texels sum_slices(const Run& run, const Add& add) const;
   // The adjoint of `lookup`: adds value(pixel, is_anisotropic), weighted, to the texels that each
   // pixel reads.
   template <typename Value>
   void scatter(const ViewPixels& seen, const Value& value, Texels* sums) const;
 
   void make_slices();
-  void scale_steadiness(double steadiness, const Progress& progress);
-  void compute_diagonal(const std::vector<double>& start_weights, const Progress& progress);
-  void iterate(int steps, Texels* texels, const Progress& progress) const;
+  void scale_steadiness(double steadiness, const Run& run);
+  void compute_diagonal(const std::vector<double>& start_weights, const Run& run);
+  void iterate(int steps, Texels* texels, const Run& run) const;
   Sums dot(const Texels& a, const Texels& b) const;
 
   std::vector<ImageView> levels_;

@@ -13,8 +13,7 @@ std::uint8_t union_of(std::uint16_t of_block) {
 }
 }  // namespace
 
-ContourTree::ContourTree(const CellTree& cells, float isovalue, const Progress& progress,
-                         int threads)
+ContourTree::ContourTree(const CellTree& cells, float isovalue, const Run& run)
     : cells_(cells), isovalue_(isovalue), blocks_(cells.levels.size()) {
   const auto side_of = [&](float value) { return value >= isovalue ? kInside : kOutside; };
   root_sides_ = side_of(cells.root);
@@ -23,8 +22,8 @@ ContourTree::ContourTree(const CellTree& cells, float isovalue, const Progress& 
     const TreeLevel& level = cells.levels[k];
     blocks_[k].resize(level.size());
     const auto step = static_cast<double>(k);
-    const Progress part = progress.part(step / steps, (step + 1.0) / steps);
-    for_blocks(level, threads, part, [&](std::size_t begin, std::size_t end) {
+    const Run part = run.part(step / steps, (step + 1.0) / steps);
+    for_blocks(level, part, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         unsigned sides = 0;
         for (int o = 0; o < 8; ++o) {
@@ -35,17 +34,17 @@ ContourTree::ContourTree(const CellTree& cells, float isovalue, const Progress& 
       }
     });
   }
-  update_sides(progress.part((steps - 1.0) / steps, 1.0), threads);
+  update_sides(run.part((steps - 1.0) / steps, 1.0));
 }
 
-void ContourTree::update_sides(const Progress& progress, int threads) {
+void ContourTree::update_sides(const Run& run) {
   if (blocks_.empty()) return;
   const auto steps = static_cast<double>(blocks_.size() - 1);
   double done = 0.0;
   for (std::size_t k = blocks_.size() - 1; k-- > 0; ++done) {
     const TreeLevel& level = cells_.levels[k];
-    const Progress part = progress.part(done / steps, (done + 1.0) / steps);
-    for_blocks(level, threads, part, [&](std::size_t begin, std::size_t end) {
+    const Run part = run.part(done / steps, (done + 1.0) / steps);
+    for_blocks(level, part, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         std::size_t child = level.first[b];
         for (unsigned bits = level.split[b]; bits != 0U; bits &= bits - 1U) {

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/edge_crossing.h"
 #include "prefilter/wavelet/cell_tree.h"
 
@@ -37,7 +37,7 @@ inline constexpr CellNode kSurroundings = {0, 0, -1, 0, false, kOutside};
 class ContourTree {
  public:
   /// Throws Error(kCancelled), as does update_sides.
-  ContourTree(const CellTree& cells, float isovalue, const Progress& progress, int threads);
+  ContourTree(const CellTree& cells, float isovalue, const Run& run);
 
   const CellTree& cells() const { return cells_; }
   float isovalue() const { return isovalue_; }
@@ -49,7 +49,7 @@ class ContourTree {
     const int shift = 2 * octant;
     sides = static_cast<std::uint16_t>((sides & ~(kBothSides << shift)) | (side << shift));
   }
-  void update_sides(const Progress& progress, int threads);
+  void update_sides(const Run& run);
 
   /// The octant of a split cell; a leaf is its own octants.
   CellNode octant(const CellNode& node, int o) const {

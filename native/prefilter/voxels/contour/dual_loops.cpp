@@ -194,8 +194,7 @@ bool has_finest_vertices(const CellTree& cells, const SurfaceVertices& vertices)
   return true;
 }
 
-DualLoops dual_loops(const ContourTree& tree, const SurfaceVertices& vertices,
-                     const Progress& progress, int threads) {
+DualLoops dual_loops(const ContourTree& tree, const SurfaceVertices& vertices, const Run& run) {
   const DualCells dual(tree);
   const LoopMaker maker(vertices);
   const auto parts = static_cast<std::int64_t>(dual.part_count());
@@ -207,9 +206,9 @@ DualLoops dual_loops(const ContourTree& tree, const SurfaceVertices& vertices,
                     [&](const Meeting& leaves) { maker.add(leaves, &task); });
     }
   };
-  parallel_ranges(parts, kPartsPerTask, threads, progress.part(0.0, 0.8), make_some);
+  parallel_ranges(parts, kPartsPerTask, run.part(0.0, 0.8), make_some);
   DualLoops loops = join(vertices.positions().size(), &tasks);
-  progress.report(1.0);
+  run.report(1.0);
   return loops;
 }
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/contour_tree.h"
 #include "prefilter/voxels/contour/surface_vertices.h"
 
@@ -41,7 +41,6 @@ bool has_finest_vertices(const CellTree& cells, const SurfaceVertices& vertices)
 /// would share two sides across a face whose corners alternate between inside and outside; there
 /// the inside corners are joined instead of the outside ones (R. Wenger, Isosurfaces, 2013), which
 /// divides both loops. Throws Error(kCancelled), and Error(kOutOfMemory) for more than 2^31 loops.
-DualLoops dual_loops(const ContourTree& tree, const SurfaceVertices& vertices,
-                     const Progress& progress, int threads);
+DualLoops dual_loops(const ContourTree& tree, const SurfaceVertices& vertices, const Run& run);
 
 }  // namespace prefilter

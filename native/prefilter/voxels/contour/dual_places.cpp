@@ -173,11 +173,10 @@ void part_corners(const Placer& placer, double cell, std::vector<Feature>* featu
   for (const std::size_t i : crowded) (*features)[i] = placer.off_corner((*features)[i]);
 }
 
-void place_features(const Placer& placer, double cell, const Progress& progress, int threads,
-                    DualPlaces* places) {
+void place_features(const Placer& placer, double cell, const Run& run, DualPlaces* places) {
   const std::size_t count = places->positions.size();
   std::vector<std::optional<Feature>> found(count);
-  parallel_ranges(static_cast<std::int64_t>(count), kLoopsPerTask, threads, progress,
+  parallel_ranges(static_cast<std::int64_t>(count), kLoopsPerTask, run,
                   [&](std::int64_t begin, std::int64_t end) {
                     for (auto i = static_cast<std::size_t>(begin);
                          i < static_cast<std::size_t>(end); ++i) {
@@ -229,8 +228,7 @@ void place_tips(const DualLoops& loops, const VertexSamples& samples, DualPlaces
 
 DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& positions,
                        const std::vector<Vector3>& halfway, const EdgeSource& edges,
-                       const FeaturePlaces* features, const Vector3& cell, const Progress& progress,
-                       int threads) {
+                       const FeaturePlaces* features, const Vector3& cell, const Run& run) {
   const double side = std::min({cell[0], cell[1], cell[2]});
   const Placer placer(loops, positions, edges, features, side);
   DualPlaces places;
@@ -241,8 +239,8 @@ DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& posit
   places.is_sharp.assign(loops.size(), 0);
   places.is_corner.assign(loops.size(), 0);
   places.on_edge.assign(loops.size(), -1);
-  const auto for_each = [&](std::size_t count, const Progress& part, const auto& visit) {
-    parallel_ranges(static_cast<std::int64_t>(count), kLoopsPerTask, threads, part,
+  const auto for_each = [&](std::size_t count, const Run& part, const auto& visit) {
+    parallel_ranges(static_cast<std::int64_t>(count), kLoopsPerTask, part,
                     [&](std::int64_t begin, std::int64_t end) {
                       for (auto i = static_cast<std::size_t>(begin);
                            i < static_cast<std::size_t>(end); ++i) {
@@ -250,7 +248,7 @@ DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& posit
                       }
                     });
   };
-  for_each(loops.size(), progress.part(0.0, 0.1), [&](std::size_t i) {
+  for_each(loops.size(), run.part(0.0, 0.1), [&](std::size_t i) {
     places.middles[i] = Placer::middle(loops.loop(i), positions);
     places.safe[i] = Placer::middle(loops.loop(i), halfway);
     const auto corner = static_cast<std::size_t>(loops.loop(i).front());
@@ -260,17 +258,17 @@ DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& posit
   std::vector<Vector3> normals(positions.size());
   for (const double begin : {0.1, 0.3}) {
     const std::vector<Vector3>& around = begin == 0.1 ? places.middles : places.positions;
-    for_each(normals.size(), progress.part(begin, begin + 0.1),
+    for_each(normals.size(), run.part(begin, begin + 0.1),
              [&](std::size_t v) { normals[v] = placer.normal(v, around); });
-    for_each(loops.size(), progress.part(begin + 0.1, begin + 0.2), [&](std::size_t i) {
+    for_each(loops.size(), run.part(begin + 0.1, begin + 0.2), [&](std::size_t i) {
       places.positions[i] = placer.smooth(i, places.middles, normals);
     });
   }
   if (features != nullptr) {
-    place_features(placer, side, progress.part(0.5, 0.8), threads, &places);
+    place_features(placer, side, run.part(0.5, 0.8), &places);
     place_tips(loops, edges.samples, &places);
   }
-  relax_places(loops, positions, normals, progress.part(0.8, 1.0), threads, &places);
+  relax_places(loops, positions, normals, run.part(0.8, 1.0), &places);
   return places;
 }
 

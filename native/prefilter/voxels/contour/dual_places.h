@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/dual_loops.h"
 #include "prefilter/voxels/contour/edge_source.h"
 #include "prefilter/voxels/contour/feature_places.h"
@@ -40,7 +40,6 @@ struct DualPlaces {
 /// Throws Error(kCancelled).
 DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& positions,
                        const std::vector<Vector3>& halfway, const EdgeSource& edges,
-                       const FeaturePlaces* features, const Vector3& cell, const Progress& progress,
-                       int threads);
+                       const FeaturePlaces* features, const Vector3& cell, const Run& run);
 
 }  // namespace prefilter

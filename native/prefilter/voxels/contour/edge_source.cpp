@@ -8,32 +8,31 @@
 namespace prefilter {
 
 void read_sources(const CellTree& cells, const RootFrame& frame, const ContourOptions& options,
-                  const Progress& progress, ContourTree* tree, EdgeSource* edges) {
-  edges->meshes.emplace(options.sources, frame, frame.cell(0, cells.depth()),
-                        progress.part(0.0, 0.66), options.threads);
+                  const Run& run, ContourTree* tree, EdgeSource* edges) {
+  const Stages stages(run, {33, 10, 7});
+  edges->meshes.emplace(options.sources, frame, frame.cell(0, cells.depth()), stages[0]);
   if (!edges->meshes->has_meetings()) return;
-  edges->part_sides.emplace(*tree, frame, *edges->meshes, progress.part(0.66, 0.86));
-  edges->part_sides->settle({options.thickened, frame}, progress.part(0.86, 1.0), options.threads,
-                            tree);
+  edges->part_sides.emplace(*tree, frame, *edges->meshes, stages[1]);
+  edges->part_sides->settle({options.thickened, frame}, stages[2], tree);
 }
 
 void sample_edges(const ContourTree& tree, const RootFrame& frame, const CellTree* thickened,
-                  const Progress& progress, int threads, SurfaceVertices* vertices,
-                  EdgeSource* edges) {
+                  const Run& run, SurfaceVertices* vertices, EdgeSource* edges) {
   if (edges->meshes) {
     edges->samples = sample_vertices(tree, frame, *edges->meshes,
                                      edges->part_sides ? &*edges->part_sides : nullptr,
-                                     {thickened, frame}, progress, threads, vertices);
+                                     {thickened, frame}, run, vertices);
     return;
   }
-  edges->smooth_parts.emplace(tree, frame, *vertices, progress.part(0.0, 0.5), threads);
-  edges->samples = edges->smooth_parts->sample_vertices(progress.part(0.5, 1.0), threads, vertices);
+  const Stages stages(run, {1, 1});
+  edges->smooth_parts.emplace(tree, frame, *vertices, stages[0]);
+  edges->samples = edges->smooth_parts->sample_vertices(stages[1], vertices);
 }
 
 std::vector<std::int64_t> trace_labels(const SourceSurface& surface, FacetedMesh* mesh) {
   std::vector<std::int64_t> triangles = surface.first_triangles();
   const auto known = static_cast<std::int32_t>(triangles.size());
-  const int added = spread_labels(mesh, known, Progress());
+  const int added = spread_labels(mesh, known, Run());
   triangles.resize(triangles.size() + static_cast<std::size_t>(added), -1);
   // Regions without edges nearby: use any of their triangles.
   for (std::size_t t = 0; t < mesh->triangles.size() && added > 0; ++t) {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/contour_tree.h"
 #include "prefilter/voxels/contour/looped_mesh.h"
 #include "prefilter/voxels/contour/occupancy_surface.h"
@@ -43,13 +43,12 @@ struct EdgeSource {
 /// Reads the sources, which must exist, and sets the sides of leaves where several sources meet.
 /// Throws as SourceSurface does.
 void read_sources(const CellTree& cells, const RootFrame& frame, const ContourOptions& options,
-                  const Progress& progress, ContourTree* tree, EdgeSource* edges);
+                  const Run& run, ContourTree* tree, EdgeSource* edges);
 
 /// Moves the vertices near edges onto the sources, or onto the surface that the occupancies define
 /// if there are none. Throws Error(kCancelled).
 void sample_edges(const ContourTree& tree, const RootFrame& frame, const CellTree* thickened,
-                  const Progress& progress, int threads, SurfaceVertices* vertices,
-                  EdgeSource* edges);
+                  const Run& run, SurfaceVertices* vertices, EdgeSource* edges);
 
 /// Gives all triangles labels; returns a source triangle for each label.
 std::vector<std::int64_t> trace_labels(const SourceSurface& surface, FacetedMesh* mesh);

@@ -135,11 +135,10 @@ void find_bricks(const ContourTree& tree, const CellNode& cell, const CellCoordi
 
 // Calls visit(brick, window) for all bricks; each window is used for one brick at a time.
 template <typename Visit>
-void for_bricks(const ContourTree& tree, const Progress& progress, int threads,
-                const Visit& visit) {
+void for_bricks(const ContourTree& tree, const Run& run, const Visit& visit) {
   std::vector<Brick> bricks;
   find_bricks(tree, tree.root(), {0, 0, 0}, &bricks);
-  parallel_ranges(static_cast<std::int64_t>(bricks.size()), kBricksPerTask, threads, progress,
+  parallel_ranges(static_cast<std::int64_t>(bricks.size()), kBricksPerTask, run,
                   [&](std::int64_t begin, std::int64_t end) {
                     BrickWindow window(tree);
                     for (std::int64_t i = begin; i < end; ++i) {
@@ -149,7 +148,7 @@ void for_bricks(const ContourTree& tree, const Progress& progress, int threads,
 }
 }  // namespace
 
-void settle_sides(const Progress& progress, int threads, ContourTree* tree) {
+void settle_sides(const Run& run, ContourTree* tree) {
   const std::vector<TreeLevel>& levels = tree->cells().levels;
   const auto is_doubtful = [&](std::size_t level, std::size_t block, int o) {
     return std::abs(levels[level].blocks[block][static_cast<std::size_t>(o)] - 0.5F) < kDoubt &&
@@ -161,28 +160,27 @@ void settle_sides(const Progress& progress, int threads, ContourTree* tree) {
     }
     return false;
   };
-  for_bricks(*tree, progress.part(0.0, 0.95), threads,
-             [&](const Brick& brick, BrickWindow* window) {
-               const auto level = static_cast<std::size_t>(brick.depth - 1);
-               window->for_blocks_of(brick, has_doubtful, [&](const LeafBlock& block) {
-                 for (int o = 0; o < 8; ++o) {
-                   if (!is_doubtful(level, block.block, o)) continue;
-                   const std::optional<float> height =
-                       height_over_center(window->cell(octant_at(block.at, o)), window->strides());
-                   if (height)
-                     tree->set_side(level, block.block, o, *height >= 0.0F ? kInside : kOutside);
-                 }
-               });
-             });
-  tree->update_sides(progress.part(0.95, 1.0), threads);
+  const Stages stages(run, {19, 1});
+  for_bricks(*tree, stages[0], [&](const Brick& brick, BrickWindow* window) {
+    const auto level = static_cast<std::size_t>(brick.depth - 1);
+    window->for_blocks_of(brick, has_doubtful, [&](const LeafBlock& block) {
+      for (int o = 0; o < 8; ++o) {
+        if (!is_doubtful(level, block.block, o)) continue;
+        const std::optional<float> height =
+            height_over_center(window->cell(octant_at(block.at, o)), window->strides());
+        if (height) tree->set_side(level, block.block, o, *height >= 0.0F ? kInside : kOutside);
+      }
+    });
+  });
+  tree->update_sides(stages[1]);
 }
 
-void fit_vertices(const ContourTree& tree, const RootFrame& frame, const Progress& progress,
-                  int threads, SurfaceVertices* vertices) {
+void fit_vertices(const ContourTree& tree, const RootFrame& frame, const Run& run,
+                  SurfaceVertices* vertices) {
   const auto has_vertices = [&](std::size_t level, std::size_t block) {
     return vertices->cuts(level, block) != 0;
   };
-  for_bricks(tree, progress, threads, [&](const Brick& brick, BrickWindow* window) {
+  for_bricks(tree, run, [&](const Brick& brick, BrickWindow* window) {
     const auto level = static_cast<std::size_t>(brick.depth - 1);
     window->for_blocks_of(brick, has_vertices, [&](const LeafBlock& block) {
       std::size_t vertex = vertices->first(level, block.block);

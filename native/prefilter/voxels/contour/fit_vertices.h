@@ -4,7 +4,7 @@
 // neighboring cells.
 #pragma once
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/surface_vertices.h"
 
 namespace prefilter {
@@ -15,11 +15,11 @@ inline constexpr float kDoubt = 0.05F;
 /// Assigns leaves with occupancies close to 1/2 to the side of their center, by height_over_center:
 /// on curved surfaces the two differ, and triangles between such a center and the surface would be
 /// inside out. Throws Error(kCancelled).
-void settle_sides(const Progress& progress, int threads, ContourTree* tree);
+void settle_sides(const Run& run, ContourTree* tree);
 
 /// Moves vertices along their lines to where height_crossing finds the surface; other vertices
 /// stay. Throws Error(kCancelled).
-void fit_vertices(const ContourTree& tree, const RootFrame& frame, const Progress& progress,
-                  int threads, SurfaceVertices* vertices);
+void fit_vertices(const ContourTree& tree, const RootFrame& frame, const Run& run,
+                  SurfaceVertices* vertices);
 
 }  // namespace prefilter

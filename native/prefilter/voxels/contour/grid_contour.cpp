@@ -25,7 +25,7 @@ using Levels = std::vector<TreeLevel>;
 // grid is empty.
 class BlockSides {
  public:
-  BlockSides(const GridView& grid, const ContourOptions& options, const Progress& progress)
+  BlockSides(const GridView& grid, const ContourOptions& options, const Run& run)
       : grid_(grid), least_inside_(options.isovalue), most_outside_(options.isovalue) {
     if (options.interpolant == Interpolant::kPlane && options.isovalue == 0.5F) {
       // settle_sides may assign these to either side.
@@ -35,7 +35,7 @@ class BlockSides {
     for (std::size_t a = 0; a < 3; ++a) size_[a] = (grid.size[a] + 1) / 2;
     const auto slice = static_cast<std::size_t>(size_[1]) * static_cast<std::size_t>(size_[2]);
     sides_.resize(static_cast<std::size_t>(size_[0]) * slice);
-    parallel_for(size_[0], options.threads, progress, [&](std::int64_t x) {
+    parallel_for(size_[0], run, [&](std::int64_t x) {
       std::uint8_t* of_slice = sides_.data() + static_cast<std::size_t>(x) * slice;
       const int low = 2 * static_cast<int>(x);
       for (int i = low; i < std::min(low + 2, grid.size[0]); ++i) {
@@ -160,9 +160,9 @@ struct Task {
   Levels levels;
 };
 
-CellTree tree_of(const GridView& grid, int depth, const ContourOptions& options,
-                 const Progress& progress) {
-  const BlockSides sides(grid, options, progress.part(0.0, 0.3));
+CellTree tree_of(const GridView& grid, int depth, const ContourOptions& options, const Run& run) {
+  const Stages stages(run, {3, 7});
+  const BlockSides sides(grid, options, stages[0]);
   const TreeBuilder builder(grid, sides, options.isovalue, depth);
   const int task_depth = std::min(kTaskDepth, depth);
   const int tasks_along = 1 << task_depth;
@@ -172,7 +172,7 @@ CellTree tree_of(const GridView& grid, int depth, const ContourOptions& options,
                                           cell[2])];
   };
   const auto count = static_cast<std::int64_t>(tasks.size());
-  parallel_for(count, options.threads, progress.part(0.3, 1.0), [&](std::int64_t i) {
+  parallel_for(count, stages[1], [&](std::int64_t i) {
     Task& task = tasks[static_cast<std::size_t>(i)];
     const int index = static_cast<int>(i);
     task.cell = {index / (tasks_along * tasks_along), index / tasks_along % tasks_along,
@@ -220,8 +220,9 @@ TriangleMesh contour_grid(const GridView& grid, const GridFrame& frame,
   check_box(root, "spacing: the grid");
   ContourOptions rest = options;
   rest.interpolant = options.interpolant.value_or(Interpolant::kOccupancy);
-  const CellTree tree = tree_of(grid, depth, rest, options.progress.part(0.0, 0.3));
-  rest.progress = options.progress.part(0.3, 1.0);
+  const Stages stages(options.run, {3, 7});
+  const CellTree tree = tree_of(grid, depth, rest, stages[0]);
+  rest.run = stages[1];
   return contour_tree(tree, root, rest);
 }
 

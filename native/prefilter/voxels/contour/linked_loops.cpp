@@ -113,7 +113,7 @@ bool are_divided(const FeatureSurface& surface, const VertexSamples& samples, st
 }
 
 LinkedLoops link_loops(std::vector<SharpLoop> loops, const FeatureSurface& surface,
-                       const VertexSamples& samples, const Progress& progress, int threads) {
+                       const VertexSamples& samples, const Run& run) {
   LinkedLoops linked{std::move(loops), {}};
   linked.sides.resize(linked.size());
   const auto find_some = [&](std::int64_t begin, std::int64_t end) {
@@ -124,8 +124,7 @@ LinkedLoops link_loops(std::vector<SharpLoop> loops, const FeatureSurface& surfa
       }
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(linked.size()), kLoopsPerTask, threads, progress,
-                  find_some);
+  parallel_ranges(static_cast<std::int64_t>(linked.size()), kLoopsPerTask, run, find_some);
   find_joints(&linked);
   find_shared(&linked);
   return linked;

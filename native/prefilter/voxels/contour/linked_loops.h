@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/feature_surface.h"
 #include "prefilter/voxels/contour/looped_mesh.h"
 #include "prefilter/voxels/contour/sharp_vertices.h"
@@ -49,6 +49,6 @@ bool are_divided(const FeatureSurface& surface, const VertexSamples& samples, st
 /// Finds the sides that edges cross. Two loops can be joined if they share exactly one such side.
 /// Throws Error(kCancelled).
 LinkedLoops link_loops(std::vector<SharpLoop> loops, const FeatureSurface& surface,
-                       const VertexSamples& samples, const Progress& progress, int threads);
+                       const VertexSamples& samples, const Run& run);
 
 }  // namespace prefilter

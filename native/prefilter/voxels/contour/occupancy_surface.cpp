@@ -43,15 +43,14 @@ void for_around(const CellCoordinates& at, int reach, const Visit& visit) {
 }  // namespace
 
 OccupancySurface::OccupancySurface(const ContourTree& tree, const RootFrame& frame,
-                                   const SurfaceVertices& vertices, const Progress& progress,
-                                   int threads)
+                                   const SurfaceVertices& vertices, const Run& run)
     : tree_(tree), frame_(frame), depth_(tree.cells().depth()) {
   gather(tree.root(), {0, 0, 0}, vertices);
   places_.reserve(cells_.size());
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     places_[key_of(cells_[i].at)] = static_cast<std::uint32_t>(i);
   }
-  parallel_ranges(static_cast<std::int64_t>(cells_.size()), kCellsPerTask, threads, progress,
+  parallel_ranges(static_cast<std::int64_t>(cells_.size()), kCellsPerTask, run,
                   [&](std::int64_t begin, std::int64_t end) {
                     for (std::int64_t i = begin; i < end; ++i) {
                       SurfaceCell& cell = cells_[static_cast<std::size_t>(i)];
@@ -60,7 +59,7 @@ OccupancySurface::OccupancySurface(const ContourTree& tree, const RootFrame& fra
                   });
   join_regions();
   near_.resize(cells_.size());
-  parallel_ranges(static_cast<std::int64_t>(cells_.size()), kCellsPerTask, threads, progress,
+  parallel_ranges(static_cast<std::int64_t>(cells_.size()), kCellsPerTask, run,
                   [&](std::int64_t begin, std::int64_t end) {
                     for (auto i = static_cast<std::size_t>(begin);
                          i < static_cast<std::size_t>(end); ++i) {
@@ -430,18 +429,16 @@ void OccupancySurface::sample_cell(const SurfaceCell& cell, const std::vector<Ve
   }
 }
 
-VertexSamples OccupancySurface::sample_vertices(const Progress& progress, int threads,
-                                                SurfaceVertices* vertices) const {
+VertexSamples OccupancySurface::sample_vertices(const Run& run, SurfaceVertices* vertices) const {
   const auto count = static_cast<std::int64_t>(cells_.size());
   std::vector<std::vector<Found>> tasks(
       static_cast<std::size_t>(range_count(count, kCellsPerTask)));
-  parallel_ranges(count, kCellsPerTask, threads, progress,
-                  [&](std::int64_t begin, std::int64_t end) {
-                    for (std::int64_t i = begin; i < end; ++i) {
-                      sample_cell(cells_[static_cast<std::size_t>(i)], vertices->positions(),
-                                  &tasks[static_cast<std::size_t>(begin / kCellsPerTask)]);
-                    }
-                  });
+  parallel_ranges(count, kCellsPerTask, run, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      sample_cell(cells_[static_cast<std::size_t>(i)], vertices->positions(),
+                  &tasks[static_cast<std::size_t>(begin / kCellsPerTask)]);
+    }
+  });
   VertexSamples result;
   result.index.assign(vertices->positions().size(), -1);
   for (const std::vector<Found>& task : tasks) {

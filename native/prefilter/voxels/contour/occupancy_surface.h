@@ -29,12 +29,11 @@ class OccupancySurface final : public FeatureSurface {
  public:
   /// Throws Error(kCancelled).
   OccupancySurface(const ContourTree& tree, const RootFrame& frame, const SurfaceVertices& vertices,
-                   const Progress& progress, int threads);
+                   const Run& run);
 
   /// Moves the vertices beside edges onto the regions to which they belong. Throws
   /// Error(kCancelled).
-  VertexSamples sample_vertices(const Progress& progress, int threads,
-                                SurfaceVertices* vertices) const;
+  VertexSamples sample_vertices(const Run& run, SurfaceVertices* vertices) const;
 
   double cell() const override { return frame_.cell(0, depth_); }
   std::optional<SourcePoint> nearest(const Vector3& point, double reach,

@@ -23,10 +23,10 @@ class Outliner {
                   -1);
   }
 
-  void cut_rows(const Progress& progress) {
+  void cut_rows(const Run& run) {
     for (int x = -1; x < samples_.size[0]; ++x) {
       for (int y = -1; y < samples_.size[1]; ++y) cut_square(x, y);
-      progress.report((x + 1.0) / samples_.size[0]);
+      run.report((x + 1.0) / samples_.size[0]);
     }
   }
 
@@ -109,7 +109,7 @@ std::vector<OutlinePoints> contour_outlines(const PlaneView& samples, const Plan
   check_samples({samples.values, static_cast<std::size_t>(samples.size[0]) *
                                      static_cast<std::size_t>(samples.size[1])});
   Outliner outliner(samples, frame, options);
-  outliner.cut_rows(options.progress);
+  outliner.cut_rows(options.run);
   return outliner.take();
 }
 

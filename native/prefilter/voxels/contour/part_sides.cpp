@@ -49,9 +49,9 @@ float value_at(const ContourTree& tree, const RootFrame& frame, const Vector3& p
 }  // namespace
 
 PartSides::PartSides(const ContourTree& tree, const RootFrame& frame, const SourceSurface& surface,
-                     const Progress& progress)
+                     const Run& run)
     : surface_(surface), frame_(frame) {
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   surface.for_meeting_bricks([&](const Vector3& low, double side) {
     for (int i = 0; i < kCellSamples * kCellSamples * kCellSamples; ++i) {
       cancel_check.step();
@@ -220,8 +220,7 @@ std::optional<SourcePoint> PartSides::exit(const Vector3& in, const Vector3& out
   return best;
 }
 
-void PartSides::settle(const ThickenedCells& thickened, const Progress& progress, int threads,
-                       ContourTree* tree) const {
+void PartSides::settle(const ThickenedCells& thickened, const Run& run, ContourTree* tree) const {
   struct Leaf {
     std::size_t level;
     std::size_t block;
@@ -230,7 +229,7 @@ void PartSides::settle(const ThickenedCells& thickened, const Progress& progress
     Vector3 size;
   };
   std::vector<Leaf> leaves;
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   const auto find = [&](const auto& self, const CellNode& cell, const CellCoordinates& at) -> void {
     for (int o = 0; o < 8; ++o) {
       const CellNode octant = tree->octant(cell, o);
@@ -260,13 +259,13 @@ void PartSides::settle(const ThickenedCells& thickened, const Progress& progress
       if (inside) sides[i] = *inside ? kInside : kOutside;
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(leaves.size()), kLeavesPerTask, threads,
-                  progress.part(0.2, 0.9), settle_some);
+  parallel_ranges(static_cast<std::int64_t>(leaves.size()), kLeavesPerTask, run.part(0.2, 0.9),
+                  settle_some);
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     if (sides[i] == 0) continue;
     tree->set_side(leaves[i].level, leaves[i].block, leaves[i].octant, sides[i]);
   }
-  tree->update_sides(progress.part(0.9, 1.0), threads);
+  tree->update_sides(run.part(0.9, 1.0));
 }
 
 }  // namespace prefilter

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/contour_tree.h"
 #include "prefilter/voxels/contour/root_frame.h"
 #include "prefilter/voxels/contour/source_surface.h"
@@ -25,12 +25,11 @@ class PartSides {
  public:
   /// Throws Error(kCancelled).
   PartSides(const ContourTree& tree, const RootFrame& frame, const SourceSurface& surface,
-            const Progress& progress);
+            const Run& run);
 
   /// Assigns leaves where parts meet, except thickened ones, to the side on which most of their
   /// volume lies, by the parts' planes. Throws Error(kCancelled).
-  void settle(const ThickenedCells& thickened, const Progress& progress, int threads,
-              ContourTree* tree) const;
+  void settle(const ThickenedCells& thickened, const Run& run, ContourTree* tree) const;
 
   /// The point at which the segment from `in`, which must be inside, to `out` leaves the shape; if
   /// there are several, the one nearest to `expected`. `is_known` is set if the sides along the

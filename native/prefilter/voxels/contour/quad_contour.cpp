@@ -46,7 +46,7 @@ std::vector<std::int64_t> origins_of(const QuadSurface& surface, const SourceSur
 
 // Assigns leaves above the finest depth to the side of their value. In a refined tree such leaves
 // on different sides are never adjacent.
-void unsettle_coarse(const Progress& progress, int threads, ContourTree* tree) {
+void unsettle_coarse(const Run& run, ContourTree* tree) {
   const std::vector<TreeLevel>& levels = tree->cells().levels;
   for (std::size_t level = 0; level + 1 < levels.size(); ++level) {
     for (std::size_t block = 0; block < levels[level].size(); ++block) {
@@ -57,51 +57,49 @@ void unsettle_coarse(const Progress& progress, int threads, ContourTree* tree) {
       }
     }
   }
-  tree->update_sides(progress, threads);
+  tree->update_sides(run);
 }
 
 // None if the surface passes between leaves that are not of the finest depth.
 std::optional<QuadMesh> quads_of(const CellTree& cells, const Box& root, bool is_refined,
-                                 const ContourOptions& options, const Progress& progress) {
-  const int threads = options.threads;
+                                 const ContourOptions& options, const Run& run) {
   const RootFrame frame(root);
   const Interpolant interpolant = interpolant_of(options);
   const bool is_sharp = interpolant == Interpolant::kSharp;
   const bool fits = is_sharp || interpolant == Interpolant::kPlane;
-  ContourTree tree(cells, options.isovalue, progress.part(0.0, 0.1), threads);
-  if (fits) settle_sides(progress.part(0.1, 0.2), threads, &tree);
+  const Stages stages(run, {2, 2, 2, 1, 2, 1, 2, 2, 2, 3, 1});
+  ContourTree tree(cells, options.isovalue, stages[0]);
+  if (fits) settle_sides(stages[1], &tree);
   EdgeSource edges;
   if (is_sharp && !options.sources.empty()) {
-    read_sources(cells, frame, options, progress.part(0.2, 0.3), &tree, &edges);
+    read_sources(cells, frame, options, stages[2], &tree, &edges);
   }
-  if (is_refined) unsettle_coarse(progress.part(0.3, 0.35), threads, &tree);
-  SurfaceVertices vertices(tree, frame, interpolant, progress.part(0.35, 0.45), threads);
+  if (is_refined) unsettle_coarse(stages[3], &tree);
+  SurfaceVertices vertices(tree, frame, interpolant, stages[4]);
   if (!has_finest_vertices(cells, vertices)) return std::nullopt;
-  if (fits) fit_vertices(tree, frame, progress.part(0.45, 0.5), threads, &vertices);
+  if (fits) fit_vertices(tree, frame, stages[5], &vertices);
   if (is_sharp) {
-    sample_edges(tree, frame, options.thickened, progress.part(0.5, 0.6), threads, &vertices,
-                 &edges);
+    sample_edges(tree, frame, options.thickened, stages[6], &vertices, &edges);
   }
   const std::vector<Vector3> halves = halfway(tree, frame, vertices);
-  const DualLoops loops = dual_loops(tree, vertices, progress.part(0.6, 0.7), threads);
+  const DualLoops loops = dual_loops(tree, vertices, stages[7]);
   if (is_sharp) straighten_borders(loops, *edges.surface(), &edges.samples, &vertices);
   Vector3 cell;
   for (int a = 0; a < 3; ++a) cell[a] = frame.cell(a, cells.depth());
   std::optional<FeaturePlaces> features;
   if (edges.surface() != nullptr) features.emplace(*edges.surface());
   const FeaturePlaces* on_edges = features ? &*features : nullptr;
-  const DualPlaces places = dual_places(loops, vertices.positions(), halves, edges, on_edges, cell,
-                                        progress.part(0.7, 0.8), threads);
-  QuadSurface surface =
-      settled_quads(loops, places, edges, on_edges, cell, progress.part(0.8, 0.95), threads);
+  const DualPlaces places =
+      dual_places(loops, vertices.positions(), halves, edges, on_edges, cell, stages[8]);
+  QuadSurface surface = settled_quads(loops, places, edges, on_edges, cell, stages[9]);
   QuadMesh mesh;
   if (edges.meshes) {
     mesh.origins = origins_of(surface, *edges.meshes, {options.thickened, frame});
   }
-  frame.place(progress.part(0.95, 1.0), threads, &surface.positions);
+  frame.place(stages[10], &surface.positions);
   mesh.positions = std::move(surface.positions);
   mesh.quads = std::move(surface.quads);
-  progress.report(1.0);
+  run.report(1.0);
   return mesh;
 }
 }  // namespace
@@ -114,16 +112,16 @@ QuadMesh contour_quads(const CellTree& cells, const Box& root, const ContourOpti
                   "; quads need 0.5");
   }
   if (cells.levels.empty())
-    return *quads_of(split_root(cells.root), root, true, options, options.progress);
+    return *quads_of(split_root(cells.root), root, true, options, options.run);
   if (!has_coarse_surface(cells)) {
-    std::optional<QuadMesh> mesh = quads_of(cells, root, false, options, options.progress);
+    std::optional<QuadMesh> mesh = quads_of(cells, root, false, options, options.run);
     if (mesh) return std::move(*mesh);
   }
-  const CellTree fine = with_fine_border(
-      refined(cells, cells.depth(), options.progress.part(0.0, kRefining - 0.05), options.threads),
-      options.progress.part(kRefining - 0.05, kRefining), options.threads);
+  const CellTree fine =
+      with_fine_border(refined(cells, cells.depth(), options.run.part(0.0, kRefining - 0.05)),
+                       options.run.part(kRefining - 0.05, kRefining));
   std::optional<QuadMesh> mesh =
-      quads_of(fine, root, true, options, options.progress.part(kRefining, 1.0));
+      quads_of(fine, root, true, options, options.run.part(kRefining, 1.0));
   if (!mesh) throw_invalid("octree: found a surface between cells of several sizes");
   return std::move(*mesh);
 }

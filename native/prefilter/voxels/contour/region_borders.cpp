@@ -134,7 +134,7 @@ std::vector<std::int32_t> rough_vertices(const WeldedMeshes& welded,
 }
 }  // namespace
 
-RegionAreas measure_regions(const WeldedMeshes& welded, int region_count, const Progress& progress,
+RegionAreas measure_regions(const WeldedMeshes& welded, int region_count, const Run& run,
                             std::vector<std::int32_t>* labels) {
   RegionAreas areas;
   areas.regions.assign(static_cast<std::size_t>(region_count), 0.0);
@@ -142,7 +142,7 @@ RegionAreas measure_regions(const WeldedMeshes& welded, int region_count, const 
   const std::size_t count = welded.triangle_count();
   for (std::size_t t = 0; t < count; ++t) {
     if (t % kRowsPerReport == 0) {
-      progress.report(static_cast<double>(t) / static_cast<double>(count));
+      run.report(static_cast<double>(t) / static_cast<double>(count));
     }
     const Vector3 twice = welded.normal(t);
     const double area = std::sqrt(dot(twice, twice)) / 2.0;

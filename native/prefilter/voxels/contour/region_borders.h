@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/smooth_regions.h"
 #include "prefilter/voxels/contour/source_regions.h"
 
@@ -18,7 +18,7 @@ struct RegionAreas {
 };
 
 /// Measures regions; regions of area 0 lose their label (-1). Throws Error(kCancelled).
-RegionAreas measure_regions(const WeldedMeshes& welded, int region_count, const Progress& progress,
+RegionAreas measure_regions(const WeldedMeshes& welded, int region_count, const Run& run,
                             std::vector<std::int32_t>* labels);
 
 /// Joins regions smaller than `least` to the region of their group with the longest common walls,

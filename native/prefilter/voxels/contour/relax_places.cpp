@@ -104,15 +104,14 @@ std::vector<std::int32_t> loops_beside(const DualLoops& loops) {
 }  // namespace
 
 void relax_places(const DualLoops& loops, const std::vector<Vector3>& positions,
-                  const std::vector<Vector3>& normals, const Progress& progress, int threads,
-                  DualPlaces* places) {
+                  const std::vector<Vector3>& normals, const Run& run, DualPlaces* places) {
   const std::vector<std::int32_t> beside = loops_beside(loops);
   const std::vector<Vector3> first = places->positions;
   const auto fan_of = [&](std::size_t i) {
     return Fan(loops.loop(i), positions, normals, first[i]);
   };
-  const auto for_loops = [&](const Progress& part, const auto& visit) {
-    parallel_ranges(static_cast<std::int64_t>(loops.size()), kLoopsPerTask, threads, part,
+  const auto for_loops = [&](const Run& part, const auto& visit) {
+    parallel_ranges(static_cast<std::int64_t>(loops.size()), kLoopsPerTask, part,
                     [&](std::int64_t begin, std::int64_t end) {
                       for (auto i = static_cast<std::size_t>(begin);
                            i < static_cast<std::size_t>(end); ++i) {
@@ -121,13 +120,13 @@ void relax_places(const DualLoops& loops, const std::vector<Vector3>& positions,
                     });
   };
   std::vector<std::uint8_t> moves(loops.size());
-  for_loops(progress.part(0.0, 0.2), [&](std::size_t i) {
+  for_loops(run.part(0.0, 0.2), [&](std::size_t i) {
     moves[i] = places->is_sharp[i] == 0 && fan_of(i).is_flat() ? 1 : 0;
   });
   std::vector<Vector3> moved = first;
   for (int pass = 0; pass < kPasses; ++pass) {
     const double begin = 0.2 + 0.8 * pass / kPasses;
-    for_loops(progress.part(begin, begin + 0.8 / kPasses), [&](std::size_t i) {
+    for_loops(run.part(begin, begin + 0.8 / kPasses), [&](std::size_t i) {
       if (moves[i] == 0) return;
       Vector3 sum{};
       for (std::uint32_t k = loops.begins[i]; k < loops.begins[i + 1]; ++k) {

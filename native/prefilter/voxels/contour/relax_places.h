@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/dual_loops.h"
 #include "prefilter/voxels/contour/dual_places.h"
 
@@ -16,7 +16,6 @@ namespace prefilter {
 /// positions and unit normals; it is accurate to second order, like the initial positions. Throws
 /// Error(kCancelled).
 void relax_places(const DualLoops& loops, const std::vector<Vector3>& positions,
-                  const std::vector<Vector3>& normals, const Progress& progress, int threads,
-                  DualPlaces* places);
+                  const std::vector<Vector3>& normals, const Run& run, DualPlaces* places);
 
 }  // namespace prefilter

@@ -30,16 +30,14 @@ RootFrame::RootFrame(const Box& root) : origin_(root.low) {
   }
 }
 
-void RootFrame::place(const Progress& progress, int threads,
-                      std::vector<Vector3>* positions) const {
+void RootFrame::place(const Run& run, std::vector<Vector3>* positions) const {
   const auto place_some = [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       Vector3& p = (*positions)[i];
       for (int a = 0; a < 3; ++a) p[a] = origin_[a] + unit_ * p[a];
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(positions->size()), kRowsPerTask, threads, progress,
-                  place_some);
+  parallel_ranges(static_cast<std::int64_t>(positions->size()), kRowsPerTask, run, place_some);
 }
 
 }  // namespace prefilter

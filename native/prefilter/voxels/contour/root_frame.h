@@ -7,7 +7,7 @@
 #include <array>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/wavelet/cell_tree.h"
 
 namespace prefilter {
@@ -45,7 +45,7 @@ class RootFrame {
   double unit() const { return unit_; }
 
   /// Converts positions to the root's space. Throws Error(kCancelled).
-  void place(const Progress& progress, int threads, std::vector<Vector3>* positions) const;
+  void place(const Run& run, std::vector<Vector3>* positions) const;
 
  private:
   Vector3 origin_;

@@ -57,8 +57,8 @@ class Settling {
   }
 
   // Moves vertices of faulty triangles; returns whether any moved.
-  bool step(Flags* is_suspect, const Progress& progress, int threads) {
-    const Pairs pairs = faulty_pairs(*is_suspect, progress, threads);
+  bool step(Flags* is_suspect, const Run& run) {
+    const Pairs pairs = faulty_pairs(*is_suspect, run);
     Flags is_moved(surface_.positions.size(), 0);
     Flags slides(surface_.positions.size(), 0);
     for (const auto& pair : pairs) {
@@ -119,7 +119,7 @@ class Settling {
     }
   }
 
-  Pairs faulty_pairs(const Flags& is_suspect, const Progress& progress, int threads) const {
+  Pairs faulty_pairs(const Flags& is_suspect, const Run& run) const {
     const MeshView<std::int32_t> view{surface_.positions, triangles_};
     Flags may_intersect = is_suspect;
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
@@ -130,8 +130,8 @@ class Settling {
       if (!is_any) may_intersect[t] = 0;
     }
     const double side = kCubeCells * std::max({cell_[0], cell_[1], cell_[2]});
-    Pairs pairs = near_intersections(view, 0, may_intersect, side, progress, threads);
-    for (const auto& fold : folded_pairs(view, 0, is_suspect, progress)) {
+    Pairs pairs = near_intersections(view, 0, may_intersect, side, run);
+    for (const auto& fold : folded_pairs(view, 0, is_suspect, run)) {
       if (!is_at_wedge(fold)) pairs.push_back(fold);
     }
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
@@ -280,11 +280,10 @@ class Settling {
 }  // namespace
 
 QuadSurface settled_quads(const DualLoops& loops, const DualPlaces& places, const EdgeSource& edges,
-                          const FeaturePlaces* features, const Vector3& cell,
-                          const Progress& progress, int threads) {
+                          const FeaturePlaces* features, const Vector3& cell, const Run& run) {
   Settling settling(loops, places, edges, features, cell);
   Flags is_suspect(2 * loops.quads.size(), 1);
-  while (settling.step(&is_suspect, progress, threads)) {
+  while (settling.step(&is_suspect, run)) {
   }
   return settling.take();
 }

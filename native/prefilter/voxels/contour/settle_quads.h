@@ -3,7 +3,7 @@
 // Removes folds and intersections of quads.
 #pragma once
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/dual_loops.h"
 #include "prefilter/voxels/contour/dual_places.h"
 #include "prefilter/voxels/contour/edge_source.h"
@@ -15,7 +15,6 @@ namespace prefilter {
 /// degrees, intersect or face the wrong way, vertices slide along their edges, or retreat toward
 /// the centers of their loops and then to the safe positions. Throws Error(kCancelled).
 QuadSurface settled_quads(const DualLoops& loops, const DualPlaces& places, const EdgeSource& edges,
-                          const FeaturePlaces* features, const Vector3& cell,
-                          const Progress& progress, int threads);
+                          const FeaturePlaces* features, const Vector3& cell, const Run& run);
 
 }  // namespace prefilter

@@ -158,8 +158,8 @@ void move_tips(const SourceSurface& surface, VertexSamples* samples, SurfaceVert
 
 VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
                               const SourceSurface& surface, const PartSides* parts,
-                              const ThickenedCells& thickened, const Progress& progress,
-                              int threads, SurfaceVertices* vertices) {
+                              const ThickenedCells& thickened, const Run& run,
+                              SurfaceVertices* vertices) {
   const Sampler sampler(tree, frame, surface, parts, thickened, vertices);
   std::vector<TaskSamples> tasks(1);
   std::vector<Block> roots;
@@ -172,7 +172,7 @@ VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
   };
   above(above, {tree.root(), {0, 0, 0}});
   tasks.resize(roots.size() + 1);
-  parallel_for(static_cast<std::int64_t>(roots.size()), threads, progress, [&](std::int64_t i) {
+  parallel_for(static_cast<std::int64_t>(roots.size()), run, [&](std::int64_t i) {
     sampler.visit_all(roots[static_cast<std::size_t>(i)], &tasks[static_cast<std::size_t>(i) + 1]);
   });
   VertexSamples result;

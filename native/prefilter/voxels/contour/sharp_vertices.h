@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/part_sides.h"
 #include "prefilter/voxels/contour/source_surface.h"
 #include "prefilter/voxels/contour/surface_vertices.h"
@@ -37,7 +37,7 @@ struct VertexSamples {
 /// combined from several parts. Throws Error(kCancelled).
 VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
                               const SourceSurface& surface, const PartSides* parts,
-                              const ThickenedCells& thickened, const Progress& progress,
-                              int threads, SurfaceVertices* vertices);
+                              const ThickenedCells& thickened, const Run& run,
+                              SurfaceVertices* vertices);
 
 }  // namespace prefilter

@@ -40,8 +40,7 @@ using Flags = std::vector<std::uint8_t>;
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
 LoopStates first_states(const LinkedLoops& loops, std::span<const Vector3> positions,
-                        const VertexSamples& samples, const FeaturePlaces& places,
-                        const Progress& progress, int threads) {
+                        const VertexSamples& samples, const FeaturePlaces& places, const Run& run) {
   LoopStates states;
   states.features.resize(loops.size());
   const auto place_some = [&](std::int64_t begin, std::int64_t end) {
@@ -52,8 +51,7 @@ LoopStates first_states(const LinkedLoops& loops, std::span<const Vector3> posit
                                            samples, is_divided);
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(loops.size()), kLoopsPerTask, threads, progress,
-                  place_some);
+  parallel_ranges(static_cast<std::int64_t>(loops.size()), kLoopsPerTask, run, place_some);
   places.claim_corners(&states.features);
   states.is_sharp.assign(loops.size(), 1);
   states.is_single.assign(loops.size(), 0);
@@ -222,7 +220,7 @@ struct MetPairs {
 };
 
 MetPairs met_pairs(const LayeredMesh& layered, const Crossings& crossings, const Flags& is_suspect,
-                   double cell, const Progress& progress, int threads) {
+                   double cell, const Run& run) {
   // If fewer than 1 / kFew of all triangles are suspect, nearby triangles are collected first.
   constexpr std::ptrdiff_t kFew = 8;
   // Triangles far from edges do not change, but may be hit by vertices that left their lines.
@@ -230,20 +228,20 @@ MetPairs met_pairs(const LayeredMesh& layered, const Crossings& crossings, const
   const MeshView<std::int32_t> view{layered.mesh.positions, layered.mesh.triangles};
   const double side = kCubeCells * cell;
   const Flags may_meet = keep_rough_suspects(
-      view, layered.near, may_intersect(layered, crossings, is_suspect), side, progress);
+      view, layered.near, may_intersect(layered, crossings, is_suspect), side, run);
   const auto suspects = std::count(is_suspect.begin(), is_suspect.end(), std::uint8_t{1});
   if (kFew * suspects > std::ssize(is_suspect)) {
-    return {near_intersections(view, first, may_meet, side, progress, threads),
-            folded_pairs(view, first, is_suspect, progress)};
+    return {near_intersections(view, first, may_meet, side, run),
+            folded_pairs(view, first, is_suspect, run)};
   }
-  const NearTriangles near = near_triangles(view, first, is_suspect, side, progress);
+  const NearTriangles near = near_triangles(view, first, is_suspect, side, run);
   Flags near_may_meet(near.numbers.size());
   for (std::size_t i = 0; i < near.numbers.size(); ++i) {
     near_may_meet[i] = may_meet[near.numbers[i]];
   }
   const MeshView<std::int32_t> near_view{layered.mesh.positions, near.triangles};
-  MetPairs met{intersecting_triangles(near_view, near_may_meet, progress, threads),
-               folded_pairs(near_view, 0, near.is_suspect, progress)};
+  MetPairs met{intersecting_triangles(near_view, near_may_meet, run),
+               folded_pairs(near_view, 0, near.is_suspect, run)};
   for (Pairs* pairs : {&met.intersecting, &met.folded}) {
     for (auto& [t, u] : *pairs) {
       t = near.numbers[t];
@@ -257,11 +255,10 @@ MetPairs met_pairs(const LayeredMesh& layered, const Crossings& crossings, const
 // triangles may not intersect because of rounding, but then one of them is upside down.
 Pairs faulty_pairs(const LayeredMesh& layered, const Crossings& crossings, const Flags& is_suspect,
                    const FeatureSurface& surface, const VertexSamples& samples,
-                   const std::unordered_set<std::int32_t>& turned, const Progress& progress,
-                   int threads) {
+                   const std::unordered_set<std::int32_t>& turned, const Run& run) {
   const double cell = surface.cell();
   const MeshView<std::int32_t> view{layered.mesh.positions, layered.mesh.triangles};
-  MetPairs met = met_pairs(layered, crossings, is_suspect, cell, progress, threads);
+  MetPairs met = met_pairs(layered, crossings, is_suspect, cell, run);
   Pairs pairs = std::move(met.intersecting);
   for (const auto& fold : met.folded) {
     if (are_at_edge(view, layered.mesh.labels, fold, surface, samples, turned)) continue;
@@ -297,13 +294,12 @@ struct Faults {
 class Mending {
  public:
   Mending(LinkedLoops loops, LoopedMesh looped, LoopStates states, const Crossings& crossings,
-          const FeatureSurface& surface, const VertexSamples& samples, const Progress& progress,
-          int threads)
+          const FeatureSurface& surface, const VertexSamples& samples, const Run& run)
       : crossings_(crossings),
         surface_(surface),
         samples_(samples),
-        progress_(progress),
-        threads_(threads),
+        run_(run),
+        threads_(run.threads()),
         turned_(turned_labels(samples)),
         off_lines_(surface, samples, turned_),
         loops_(std::move(loops)),
@@ -372,8 +368,8 @@ class Mending {
       if (place->is_inside[i] == 0) changes.loops[i] = 0;
     }
     const Flags is_suspect = suspects(place->layered, faults.made, changes);
-    faults.pairs = faulty_pairs(place->layered, crossings_, is_suspect, surface_, samples_, turned_,
-                                progress_, threads_);
+    faults.pairs =
+        faulty_pairs(place->layered, crossings_, is_suspect, surface_, samples_, turned_, run_);
     changes = {Flags(changes.loops.size(), 0), Flags(changes.vertices.size(), 0)};
     return faults;
   }
@@ -420,7 +416,7 @@ class Mending {
   const Crossings& crossings_;
   const FeatureSurface& surface_;
   const VertexSamples& samples_;
-  const Progress& progress_;
+  const Run& run_;
   int threads_;
   std::unordered_set<std::int32_t> turned_;
   OffLineVertices off_lines_;
@@ -434,15 +430,13 @@ class Mending {
 }  // namespace
 
 FacetedMesh sharpen(LoopedMesh looped, const Crossings& crossings, const FeatureSurface& surface,
-                    const VertexSamples& samples, const Progress& progress, int threads) {
-  LinkedLoops loops =
-      link_loops(std::move(looped.loops), surface, samples, progress.part(0.0, 0.1), threads);
+                    const VertexSamples& samples, const Run& run) {
+  LinkedLoops loops = link_loops(std::move(looped.loops), surface, samples, run.part(0.0, 0.1));
   const FeaturePlaces places(surface);
-  LoopStates states =
-      first_states(loops, looped.positions, samples, places, progress.part(0.1, 0.5), threads);
-  const Progress mending = progress.part(0.6, 1.0);
+  LoopStates states = first_states(loops, looped.positions, samples, places, run.part(0.1, 0.5));
+  const Run mending = run.part(0.6, 1.0);
   Mending contour(std::move(loops), std::move(looped), std::move(states), crossings, surface,
-                  samples, mending, threads);
+                  samples, mending);
   return contour.mend(places);
 }
 

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/feature_surface.h"
 #include "prefilter/voxels/contour/looped_mesh.h"
 #include "prefilter/voxels/contour/sharp_vertices.h"
@@ -22,6 +22,6 @@ namespace prefilter {
 /// without edges is. `crossings` holds the positions of the vertices between cells, which come
 /// first, before sampling. Throws Error(kCancelled).
 FacetedMesh sharpen(LoopedMesh looped, const Crossings& crossings, const FeatureSurface& surface,
-                    const VertexSamples& samples, const Progress& progress, int threads);
+                    const VertexSamples& samples, const Run& run);
 
 }  // namespace prefilter

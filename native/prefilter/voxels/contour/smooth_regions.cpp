@@ -67,10 +67,10 @@ SideRows gather_sides(const WeldedMeshes& welded, std::size_t first, std::size_t
 // Calls visit(sweep, low, sides) for the sides of every edge. Each sweep covers a range of lower
 // vertices in order; sweeps run in parallel.
 template <typename Visit>
-void for_edges(const WeldedMeshes& welded, std::int64_t sweeps, const Progress& progress,
-               int threads, const Visit& visit) {
+void for_edges(const WeldedMeshes& welded, std::int64_t sweeps, const Run& run,
+               const Visit& visit) {
   const std::size_t vertices = welded.positions.size();
-  parallel_for(sweeps, threads, progress, [&](std::int64_t sweep) {
+  parallel_for(sweeps, run, [&](std::int64_t sweep) {
     const std::size_t first = vertices * static_cast<std::size_t>(sweep) / sweeps;
     const std::size_t end = vertices * static_cast<std::size_t>(sweep + 1) / sweeps;
     SideRows rows = gather_sides(welded, first, end);
@@ -111,10 +111,10 @@ struct Neighbors {
 // Calls visit(sweep, neighbors) from several threads; returns whether some edges have a single
 // side.
 template <typename Visit>
-bool for_neighbors(const WeldedMeshes& welded, std::int64_t sweeps, const Progress& progress,
-                   int threads, const Visit& visit) {
+bool for_neighbors(const WeldedMeshes& welded, std::int64_t sweeps, const Run& run,
+                   const Visit& visit) {
   std::atomic<bool> has_single = false;
-  for_edges(welded, sweeps, progress, threads,
+  for_edges(welded, sweeps, run,
             [&](std::size_t sweep, std::int32_t low, std::span<const Side> sides) {
               if (sides.size() == 1) has_single = true;
               if (sides.size() != 2 || runs_up(welded, sides[0]) == runs_up(welded, sides[1])) {
@@ -137,8 +137,8 @@ bool for_neighbors(const WeldedMeshes& welded, std::int64_t sweeps, const Progre
 // Joins triangles where is_joined(neighbors) holds; other edges are walls. Returns as for_neighbors
 // does.
 template <typename IsJoined>
-bool join_regions(const WeldedMeshes& welded, const IsJoined& is_joined, const Progress& progress,
-                  int threads, SmoothRegions* found) {
+bool join_regions(const WeldedMeshes& welded, const IsJoined& is_joined, const Run& run,
+                  SmoothRegions* found) {
   Sets regions(welded.triangle_count());
   const auto rows = static_cast<std::int64_t>(3 * welded.triangle_count());
   const std::int64_t sweeps = std::min(range_count(rows, kSidesPerSweep), kMostSweeps);
@@ -150,7 +150,7 @@ bool join_regions(const WeldedMeshes& welded, const IsJoined& is_joined, const P
       walls[sweep].push_back({both.ends, both.triangles, both.is_smooth()});
     }
   };
-  const bool has_single = for_neighbors(welded, sweeps, progress, threads, join);
+  const bool has_single = for_neighbors(welded, sweeps, run, join);
   found->walls.clear();
   for (std::vector<Wall>& some : walls) {
     found->walls.insert(found->walls.end(), some.begin(), some.end());
@@ -162,8 +162,7 @@ bool join_regions(const WeldedMeshes& welded, const IsJoined& is_joined, const P
 
 // None if some edges have a single side, unless `may_have_single`.
 std::optional<SmoothRegions> try_to_join(const WeldedMeshes& welded, double least_width,
-                                         bool may_have_single, const Progress& progress,
-                                         int threads) {
+                                         bool may_have_single, const Run& run) {
   const std::size_t count = welded.triangle_count();
   Sets parts(count);
   Sets facets(count);
@@ -173,7 +172,8 @@ std::optional<SmoothRegions> try_to_join(const WeldedMeshes& welded, double leas
     if (both.is_plane()) facets.join_from_threads(both.triangles[0], both.triangles[1]);
     return both.is_smooth();
   };
-  const bool has_single = join_regions(welded, is_smooth, progress.part(0.0, 0.6), threads, &found);
+  const Stages stages(run, {3, 2});
+  const bool has_single = join_regions(welded, is_smooth, stages[0], &found);
   if (has_single && !may_have_single) return std::nullopt;
   found.parts = parts.numbers(&found.part_count);
   int facet_count = 0;
@@ -189,13 +189,12 @@ std::optional<SmoothRegions> try_to_join(const WeldedMeshes& welded, double leas
     return both.is_smooth() &&
            (facet_of[t] == facet_of[u] || width * turn < kLeastTurn * least_width);
   };
-  join_regions(welded, is_beside_none, progress.part(0.6, 1.0), threads, &found);
+  join_regions(welded, is_beside_none, stages[1], &found);
   return found;
 }
 }  // namespace
 
-std::vector<std::int32_t> first_places(const FramedPositions& positions, const Progress& progress,
-                                       int threads) {
+std::vector<std::int32_t> first_places(const FramedPositions& positions, const Run& run) {
   std::vector<std::int32_t> order(positions.size());
   std::iota(order.begin(), order.end(), 0);
   const auto less = [&](std::int32_t a, std::int32_t b) {
@@ -203,7 +202,7 @@ std::vector<std::int32_t> first_places(const FramedPositions& positions, const P
     const Vector3 q = positions[static_cast<std::size_t>(b)];
     return p != q ? p < q : a < b;
   };
-  sort_in_parallel(&order, progress, threads, less);
+  sort_in_parallel(&order, run, less);
   std::vector<std::int32_t> firsts(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     const auto v = static_cast<std::size_t>(order[i]);
@@ -213,13 +212,12 @@ std::vector<std::int32_t> first_places(const FramedPositions& positions, const P
   return firsts;
 }
 
-SmoothRegions join_smooth(double least_width, const Progress& progress, int threads,
-                          WeldedMeshes* welded) {
-  std::optional<SmoothRegions> found =
-      try_to_join(*welded, least_width, false, progress.part(0.0, 0.5), threads);
+SmoothRegions join_smooth(double least_width, const Run& run, WeldedMeshes* welded) {
+  const Stages stages(run, {5, 1, 4});
+  std::optional<SmoothRegions> found = try_to_join(*welded, least_width, false, stages[0]);
   if (!found) {
-    welded->firsts = first_places(welded->positions, progress.part(0.5, 0.6), threads);
-    found = try_to_join(*welded, least_width, true, progress.part(0.6, 1.0), threads);
+    welded->firsts = first_places(welded->positions, stages[1]);
+    found = try_to_join(*welded, least_width, true, stages[2]);
   }
   return std::move(*found);
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/source_regions.h"
 
 namespace prefilter {
@@ -58,14 +58,12 @@ struct SmoothRegions {
 };
 
 /// For each vertex the first one at its position. Throws Error(kCancelled).
-std::vector<std::int32_t> first_places(const FramedPositions& positions, const Progress& progress,
-                                       int threads);
+std::vector<std::int32_t> first_places(const FramedPositions& positions, const Run& run);
 
 /// Joins triangles of one group at edges that turn by less than 20 degrees. Facets wider than
 /// `least_width` are only joined at edges of less than 1 degree, or with a smaller deviation than
 /// an edge of 7.6 degrees and this width. If some edges have a single side, `welded` gets first
 /// places before that. Throws Error(kCancelled).
-SmoothRegions join_smooth(double least_width, const Progress& progress, int threads,
-                          WeldedMeshes* welded);
+SmoothRegions join_smooth(double least_width, const Run& run, WeldedMeshes* welded);
 
 }  // namespace prefilter

@@ -177,15 +177,15 @@ class Stairs {
 }  // namespace
 
 void smooth_stairs(double cell, const std::function<bool(const Vector3&)>& is_free, bool only_free,
-                   const Progress& progress, int threads, FacetedMesh* mesh) {
+                   const Run& run, FacetedMesh* mesh) {
   Stairs stairs(cell, is_free, only_free, mesh);
   if (stairs.is_empty()) return;
   stairs.smooth();
   const MeshView<std::int32_t> view{mesh->positions, mesh->triangles};
   for (int i = 0; i < kMostReturns; ++i) {
     const Flags is_changed = stairs.changed();
-    auto pairs = near_intersections(view, 0, is_changed, kCube * cell, progress, threads);
-    const auto folds = folded_pairs(view, 0, is_changed, progress);
+    auto pairs = near_intersections(view, 0, is_changed, kCube * cell, run);
+    const auto folds = folded_pairs(view, 0, is_changed, run);
     pairs.insert(pairs.end(), folds.begin(), folds.end());
     if (!stairs.put_back(pairs)) return;
   }

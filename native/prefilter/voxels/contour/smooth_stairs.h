@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/remesh/faceted_mesh.h"
 
 namespace prefilter {
@@ -18,6 +18,6 @@ namespace prefilter {
 /// processing approach to fair surface design (1995), which nearly preserves volume. Throws
 /// Error(kCancelled).
 void smooth_stairs(double cell, const std::function<bool(const Vector3&)>& is_free, bool only_free,
-                   const Progress& progress, int threads, FacetedMesh* mesh);
+                   const Run& run, FacetedMesh* mesh);
 
 }  // namespace prefilter

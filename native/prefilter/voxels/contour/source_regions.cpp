@@ -58,21 +58,21 @@ Vector3 direction_of(const FramedPositions& positions, std::int32_t from, std::i
 }
 
 SourceRegions find_regions(std::span<const SourceMesh> sources, const RootFrame& frame, double cell,
-                           const Progress& progress, int threads) {
+                           const Run& run) {
   const double least = kLeastRegion * cell * cell;
   WeldedMeshes welded(sources, frame);
-  SmoothRegions regions = join_smooth(kWideCells * cell, progress.part(0.0, 0.7), threads, &welded);
+  SmoothRegions regions = join_smooth(kWideCells * cell, run.part(0.0, 0.7), &welded);
   const RegionAreas areas =
-      measure_regions(welded, regions.region_count, progress.part(0.7, 0.85), &regions.labels);
+      measure_regions(welded, regions.region_count, run.part(0.7, 0.85), &regions.labels);
   join_small(welded, areas.regions, least, kNarrowCells * cell, &regions);
-  progress.report(0.9);
+  run.report(0.9);
   const std::vector<std::uint8_t> is_on_wall = ends_of(regions.walls, welded.positions.size());
   std::vector<RegionBorder> borders = find_borders(welded, cell, &regions);
   std::vector<RegionCorner> corners = border_corners(welded.positions, borders);
   for (RegionCorner& tip : tips(welded, regions.labels, is_on_wall, areas.vertices, least)) {
     corners.push_back(std::move(tip));
   }
-  progress.report(1.0);
+  run.report(1.0);
   return {welded.positions,          JoinedTriangles(welded.meshes),
           std::move(regions.labels), std::move(regions.parts),
           std::move(borders),        std::move(corners),

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/root_frame.h"
 #include "prefilter/voxels/contour_options.h"
 
@@ -127,6 +127,6 @@ struct SourceRegions {
 ///
 /// Throws Error as check_mesh does, and if there is not one group per triangle; Error(kCancelled).
 SourceRegions find_regions(std::span<const SourceMesh> sources, const RootFrame& frame, double cell,
-                           const Progress& progress, int threads);
+                           const Run& run);
 
 }  // namespace prefilter

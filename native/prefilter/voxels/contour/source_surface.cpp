@@ -102,14 +102,14 @@ Vector3 nearest_on(const std::array<Vector3, 3>& corners, const Vector3& point) 
 }  // namespace
 
 SourceSurface::SourceSurface(std::span<const SourceMesh> sources, const RootFrame& frame,
-                             double cell, const Progress& progress, int threads)
-    : regions_(find_regions(sources, frame, cell, progress.part(0.0, 0.6), threads)),
+                             double cell, const Run& run)
+    : regions_(find_regions(sources, frame, cell, run.part(0.0, 0.6))),
       cell_(cell),
       brick_(kBrickCells * cell) {
-  mark_borders(progress.part(0.6, 0.65));
-  if (regions_.part_count > 1) mark_meetings(progress.part(0.65, 0.8));
-  build_trees(progress.part(0.8, 0.95), threads);
-  if (has_meetings()) find_rim_corners(progress.part(0.95, 1.0));
+  mark_borders(run.part(0.6, 0.65));
+  if (regions_.part_count > 1) mark_meetings(run.part(0.65, 0.8));
+  build_trees(run.part(0.8, 0.95));
+  if (has_meetings()) find_rim_corners(run.part(0.95, 1.0));
 }
 
 void SourceSurface::mark_around(const Box& box) {
@@ -118,8 +118,8 @@ void SourceSurface::mark_around(const Box& box) {
   });
 }
 
-void SourceSurface::mark_borders(const Progress& progress) {
-  CancelCheck cancel_check(progress);
+void SourceSurface::mark_borders(const Run& run) {
+  CancelCheck cancel_check(run);
   const auto& positions = regions_.positions;
   std::unordered_map<std::uint64_t, double> lengths;
   for (const RegionBorder& border : regions_.borders) {
@@ -150,8 +150,8 @@ void SourceSurface::Meeting::add(std::int32_t part) {
   ++count;
 }
 
-void SourceSurface::mark_meetings(const Progress& progress) {
-  CancelCheck cancel_check(progress);
+void SourceSurface::mark_meetings(const Run& run) {
+  CancelCheck cancel_check(run);
   for (std::size_t t = 0; t < regions_.triangles.size(); ++t) {
     cancel_check.step();
     if (regions_.labels[t] < 0) continue;
@@ -209,7 +209,7 @@ std::span<const std::int32_t> SourceSurface::meeting_parts(const Vector3& point)
   return {found->second.parts.data(), found->second.count};
 }
 
-void SourceSurface::build_trees(const Progress& progress, int threads) {
+void SourceSurface::build_trees(const Run& run) {
   const auto box_of_triangle = [&](std::int32_t triangle) {
     return triangle_box(regions_.corners_of(static_cast<std::size_t>(triangle)));
   };
@@ -225,10 +225,10 @@ void SourceSurface::build_trees(const Progress& progress, int threads) {
     if (is_near) near.push_back(triangle);
   }
   const auto arrange = [&](std::vector<std::int32_t> items, const auto& box_of_item,
-                           const Progress& part, std::vector<std::int32_t>* ordered) {
+                           const Run& part, std::vector<std::int32_t>* ordered) {
+    const Stages stages(part, {3, 2});
     const std::vector<CurvePlace> places = along_curve(
-        items.size(), [&](std::size_t i) { return middle_of(box_of_item(items[i])); },
-        part.part(0.0, 0.6), threads);
+        items.size(), [&](std::size_t i) { return middle_of(box_of_item(items[i])); }, stages[0]);
     std::vector<std::uint64_t> keys;
     ordered->clear();
     for (const CurvePlace& place : places) {
@@ -236,10 +236,10 @@ void SourceSurface::build_trees(const Progress& progress, int threads) {
       ordered->push_back(items[place.index]);
     }
     return BoxTree(
-        keys, kLeafItems, [&](std::size_t i) { return box_of_item((*ordered)[i]); },
-        part.part(0.6, 1.0));
+        keys, kLeafItems, [&](std::size_t i) { return box_of_item((*ordered)[i]); }, stages[1]);
   };
-  triangle_tree_ = arrange(std::move(near), box_of_triangle, progress.part(0.0, 0.7), &triangles_);
+  const Stages run_stages(run, {7, 3});
+  triangle_tree_ = arrange(std::move(near), box_of_triangle, run_stages[0], &triangles_);
   std::vector<std::int32_t> borders(regions_.borders.size());
   for (std::size_t i = 0; i < borders.size(); ++i) borders[i] = static_cast<std::int32_t>(i);
   border_tree_ = arrange(
@@ -249,7 +249,7 @@ void SourceSurface::build_trees(const Progress& progress, int threads) {
         return box_of(regions_.positions[static_cast<std::size_t>(ends[0])],
                       regions_.positions[static_cast<std::size_t>(ends[1])]);
       },
-      progress.part(0.7, 1.0), &borders_);
+      run_stages[1], &borders_);
 }
 
 template <typename Visit>
@@ -430,8 +430,8 @@ std::optional<Vector3> SourceSurface::nearest_border(const Vector3& point, doubl
   return found;
 }
 
-void SourceSurface::find_rim_corners(const Progress& progress) {
-  CancelCheck cancel_check(progress);
+void SourceSurface::find_rim_corners(const Run& run) {
+  CancelCheck cancel_check(run);
   for (const RegionBorder& border : regions_.borders) {
     cancel_check.step();
     const std::int32_t part = regions_.parts[static_cast<std::size_t>(border.triangles[0])];

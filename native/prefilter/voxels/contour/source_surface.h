@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/geometry/spatial/box_tree.h"
 #include "prefilter/voxels/contour/feature_surface.h"
 #include "prefilter/voxels/contour/source_regions.h"
@@ -30,7 +30,7 @@ class SourceSurface final : public FeatureSurface {
  public:
   /// `cell` is the side of the finest cells. Throws as find_regions does.
   SourceSurface(std::span<const SourceMesh> sources, const RootFrame& frame, double cell,
-                const Progress& progress, int threads);
+                const Run& run);
 
   const SourceRegions& regions() const { return regions_; }
   double cell() const override { return cell_; }
@@ -86,11 +86,11 @@ class SourceSurface final : public FeatureSurface {
   FeatureCorner corner(std::size_t index) const override;
 
  private:
-  void mark_borders(const Progress& progress);
-  void mark_meetings(const Progress& progress);
+  void mark_borders(const Run& run);
+  void mark_meetings(const Run& run);
   void mark_around(const Box& box);
-  void find_rim_corners(const Progress& progress);
-  void build_trees(const Progress& progress, int threads);
+  void find_rim_corners(const Run& run);
+  void build_trees(const Run& run);
   // Calls visit(triangle) for the triangles of a node of the tree.
   template <typename Visit>
   void for_triangles(std::size_t node, const Visit& visit) const;

@@ -166,17 +166,17 @@ class VertexMaker {
 }  // namespace
 
 SurfaceVertices::SurfaceVertices(const ContourTree& tree, const RootFrame& frame,
-                                 Interpolant interpolant, const Progress& progress, int threads) {
-  make(tree, frame, interpolant, nullptr, progress, threads);
+                                 Interpolant interpolant, const Run& run) {
+  make(tree, frame, interpolant, nullptr, run);
 }
 
 SurfaceVertices::SurfaceVertices(const ContourTree& tree, const RootFrame& frame,
                                  Interpolant interpolant, const HeightRange& heights) {
-  make(tree, frame, interpolant, &heights, Progress(), 1);
+  make(tree, frame, interpolant, &heights, Run(1));
 }
 
 void SurfaceVertices::make(const ContourTree& tree, const RootFrame& frame, Interpolant interpolant,
-                           const HeightRange* heights, const Progress& progress, int threads) {
+                           const HeightRange* heights, const Run& run) {
   const std::vector<TreeLevel>& levels = tree.cells().levels;
   for (const TreeLevel& level : levels) {
     cuts_.emplace_back(level.size());
@@ -199,8 +199,9 @@ void SurfaceVertices::make(const ContourTree& tree, const RootFrame& frame, Inte
   surroundings.fill(kSurroundings);
   above(above, {tree.root(), surroundings, {0, 0, 0}});
   tasks.resize(roots.size() + 1);
-  const Progress making = progress.part(0.0, 0.9);
-  parallel_for(static_cast<std::int64_t>(roots.size()), threads, making, [&](std::int64_t i) {
+  const Stages stages(run, {9, 1});
+  const Run making = stages[0];
+  parallel_for(static_cast<std::int64_t>(roots.size()), making, [&](std::int64_t i) {
     TaskVertices& task = tasks[static_cast<std::size_t>(i) + 1];
     task.ranges.resize(levels.size());
     maker.visit_all(roots[static_cast<std::size_t>(i)], &task);
@@ -212,7 +213,7 @@ void SurfaceVertices::make(const ContourTree& tree, const RootFrame& frame, Inte
     throw Error(ErrorCode::kOutOfMemory, "the contour has more than 2^31 vertices");
   }
   positions_.reserve(count);
-  const Progress joining = progress.part(0.9, 1.0);
+  const Run joining = stages[1];
   for (TaskVertices& task : tasks) {
     const auto offset = static_cast<std::uint32_t>(positions_.size());
     for (std::size_t k = 0; k < levels.size(); ++k) {

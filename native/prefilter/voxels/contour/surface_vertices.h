@@ -36,7 +36,7 @@ struct VertexPlace {
 class SurfaceVertices {
  public:
   SurfaceVertices(const ContourTree& tree, const RootFrame& frame, Interpolant interpolant,
-                  const Progress& progress, int threads);
+                  const Run& run);
   /// Vertices of pairs with at least one leaf in a range of heights, and their places.
   SurfaceVertices(const ContourTree& tree, const RootFrame& frame, Interpolant interpolant,
                   const HeightRange& heights);
@@ -66,7 +66,7 @@ class SurfaceVertices {
 
  private:
   void make(const ContourTree& tree, const RootFrame& frame, Interpolant interpolant,
-            const HeightRange* heights, const Progress& progress, int threads);
+            const HeightRange* heights, const Run& run);
 
   std::vector<std::vector<std::uint64_t>> cuts_;
   std::vector<std::vector<std::uint32_t>> firsts_;  // vertex of the lowest bit of each block

@@ -241,8 +241,7 @@ class TriangleMaker {
   const std::array<MarchingCase, 256>& cases_;
 };
 
-LoopedMesh join(const Progress& progress, SurfaceVertices* vertices,
-                std::vector<TaskTriangles>* tasks) {
+LoopedMesh join(const Run& run, SurfaceVertices* vertices, std::vector<TaskTriangles>* tasks) {
   LoopedMesh mesh;
   mesh.positions = vertices->take_positions();
   std::size_t count = 0;
@@ -269,8 +268,8 @@ LoopedMesh join(const Progress& progress, SurfaceVertices* vertices,
     mesh.loop_triangles.insert(mesh.loop_triangles.end(), task.loop_triangles.begin(),
                                task.loop_triangles.end());
     task = TaskTriangles();
-    progress.report(static_cast<double>(mesh.triangles.size()) /
-                    static_cast<double>(std::max<std::size_t>(count, 1)));
+    run.report(static_cast<double>(mesh.triangles.size()) /
+               static_cast<double>(std::max<std::size_t>(count, 1)));
   }
   return mesh;
 }
@@ -296,8 +295,8 @@ std::vector<std::int32_t> leave_out_unused(Mesh* mesh) {
   return used;
 }
 
-LoopedMesh make_loops(const ContourTree& tree, const Division* division, const Progress& progress,
-                      int threads, SurfaceVertices* vertices) {
+LoopedMesh make_loops(const ContourTree& tree, const Division* division, const Run& run,
+                      SurfaceVertices* vertices) {
   const DualCells dual(tree);
   const TriangleMaker maker(*vertices, division);
   const auto parts = static_cast<std::int64_t>(dual.part_count());
@@ -309,16 +308,17 @@ LoopedMesh make_loops(const ContourTree& tree, const Division* division, const P
                     [&](const Meeting& leaves) { maker.add(leaves, &task); });
     }
   };
-  parallel_ranges(parts, kPartsPerTask, threads, progress.part(0.0, 0.8), make_some);
-  return join(progress.part(0.8, 1.0), vertices, &tasks);
+  const Stages stages(run, {4, 1});
+  parallel_ranges(parts, kPartsPerTask, stages[0], make_some);
+  return join(stages[1], vertices, &tasks);
 }
 
 FacetedMesh sharpened(LoopedMesh looped, const Vector3& smallest, EdgeSource* edges,
-                      const Progress& progress, int threads) {
-  FacetedMesh mesh = sharpen(std::move(looped), edges->crossings, *edges->surface(), edges->samples,
-                             progress.part(0.0, 0.95), threads);
-  unfold_plain_loops(edges->samples, smallest, &edges->crossings, progress.part(0.95, 1.0), threads,
-                     &mesh);
+                      const Run& run) {
+  const Stages stages(run, {19, 1});
+  FacetedMesh mesh =
+      sharpen(std::move(looped), edges->crossings, *edges->surface(), edges->samples, stages[0]);
+  unfold_plain_loops(edges->samples, smallest, &edges->crossings, stages[1], &mesh);
   const std::vector<std::int32_t> used = leave_out_unused(&mesh);
   for (std::size_t i = 0; i < used.size() && !mesh.kinds.empty(); ++i) {
     mesh.kinds[i] = mesh.kinds[static_cast<std::size_t>(used[i])];
@@ -348,29 +348,25 @@ class ContourCells {
 
 // Cuts the full contour, in the frame, and frees the cells. With `sources_of_labels`, all triangles
 // get labels, and the array a source triangle for each label.
-FacetedMesh cut_tree(const RootFrame& frame, const ContourOptions& options,
-                     const Progress& progress, ContourCells* own,
-                     std::vector<std::int64_t>* sources_of_labels) {
-  const int threads = options.threads;
+FacetedMesh cut_tree(const RootFrame& frame, const ContourOptions& options, const Run& run,
+                     ContourCells* own, std::vector<std::int64_t>* sources_of_labels) {
   const CellTree& cells = own->tree();
-  std::optional<ContourTree> made(std::in_place, cells, options.isovalue, progress.part(0.0, 0.1),
-                                  threads);
+  std::optional<ContourTree> made(std::in_place, cells, options.isovalue, run.part(0.0, 0.1));
   ContourTree& tree = *made;
   const Interpolant interpolant = interpolant_of(options);
   const bool fits = options.isovalue == 0.5F &&
                     (interpolant == Interpolant::kPlane || interpolant == Interpolant::kSharp);
   const bool is_sharp = fits && interpolant == Interpolant::kSharp;
-  if (fits) settle_sides(progress.part(0.1, 0.2), threads, &tree);
+  if (fits) settle_sides(run.part(0.1, 0.2), &tree);
   EdgeSource edges;
   if (is_sharp && !options.sources.empty()) {
-    read_sources(cells, frame, options, progress.part(0.2, 0.35), &tree, &edges);
+    read_sources(cells, frame, options, run.part(0.2, 0.35), &tree, &edges);
   }
-  std::optional<SurfaceVertices> cut(std::in_place, tree, frame, interpolant,
-                                     progress.part(0.35, 0.45), threads);
+  std::optional<SurfaceVertices> cut(std::in_place, tree, frame, interpolant, run.part(0.35, 0.45));
   SurfaceVertices& vertices = *cut;
   if (fits) {
     const std::vector<Vector3> plain = vertices.positions();
-    fit_vertices(tree, frame, progress.part(0.45, 0.5), threads, &vertices);
+    fit_vertices(tree, frame, run.part(0.45, 0.5), &vertices);
     edges.crossings = crossings_of(tree, frame, plain, vertices);
   }
   const double cell = least_cell(frame, cells.depth());
@@ -378,28 +374,27 @@ FacetedMesh cut_tree(const RootFrame& frame, const ContourOptions& options,
   const ThickenedCells thickened(options.thickened, frame);
   const auto is_thickened = [&](const Vector3& p) { return thickened.holds(p); };
   if (!is_sharp) {
-    LoopedMesh looped = make_loops(tree, nullptr, progress.part(0.6, 0.85), threads, &vertices);
+    LoopedMesh looped = make_loops(tree, nullptr, run.part(0.6, 0.85), &vertices);
     if (fits) unfold({}, smallest, &edges.crossings, &looped);
     FacetedMesh mesh = {std::move(looped.positions), std::move(looped.triangles), {}, {}};
     if (fits && options.thickened != nullptr) {
-      smooth_stairs(cell, is_thickened, true, progress.part(0.85, 1.0), threads, &mesh);
+      smooth_stairs(cell, is_thickened, true, run.part(0.85, 1.0), &mesh);
     }
     return mesh;
   }
-  sample_edges(tree, frame, options.thickened, progress.part(0.5, 0.6), threads, &vertices, &edges);
+  sample_edges(tree, frame, options.thickened, run.part(0.5, 0.6), &vertices, &edges);
   const Division division(*edges.surface(), edges.samples);
-  LoopedMesh looped = make_loops(tree, &division, progress.part(0.6, 0.85), threads, &vertices);
+  LoopedMesh looped = make_loops(tree, &division, run.part(0.6, 0.85), &vertices);
   cut.reset();
   if (!edges.smooth_parts) {
     made.reset();
     own->drop();
   }
   unfold(edges.samples, smallest, &edges.crossings, &looped);
-  FacetedMesh mesh =
-      sharpened(std::move(looped), smallest, &edges, progress.part(0.85, 0.97), threads);
+  FacetedMesh mesh = sharpened(std::move(looped), smallest, &edges, run.part(0.85, 0.97));
   edges.crossings = {};
   edges.samples = {};
-  smooth_stairs(cell, is_thickened, false, progress.part(0.97, 1.0), threads, &mesh);
+  smooth_stairs(cell, is_thickened, false, run.part(0.97, 1.0), &mesh);
   if (sources_of_labels != nullptr && edges.meshes) {
     *sources_of_labels = trace_labels(*edges.meshes, &mesh);
   }
@@ -426,25 +421,24 @@ TriangleMesh contour_split(ContourCells cells, const Box& root, const ContourOpt
   const RootFrame frame(root);
   std::vector<std::int64_t> sources_of_labels;
   double cell = least_cell(frame, cells.tree().depth());
-  FacetedMesh mesh = cut_tree(frame, options, options.progress.part(0.0, cutting), &cells,
+  FacetedMesh mesh = cut_tree(frame, options, options.run.part(0.0, cutting), &cells,
                               origins != nullptr ? &sources_of_labels : nullptr);
   cells.drop();
   // Where rounding may make triangles intersect, later stages must work on the final positions.
   const bool places_first = frame.unit() > kSmallest && frame.unit() < 1.0 / kSmallest;
-  const Progress placing = options.progress.part(cutting, cutting + 0.02);
+  const Run placing = options.run.part(cutting, cutting + 0.02);
   if (places_first) {
-    frame.place(placing, options.threads, &mesh.positions);
+    frame.place(placing, &mesh.positions);
     cell *= frame.unit();
   }
   CleaningLimits limits{kCreaseTolerance * cell};
   if (options.adaptivity > 0.0) {
     mesh = simplify(std::move(mesh), options.adaptivity * cell,
-                    options.progress.part(cutting + 0.02, simplifying), options.threads);
+                    options.run.part(cutting + 0.02, simplifying));
     limits.height = kCleaningShare * options.adaptivity * cell;
   }
   if (options.clean_up) {
-    mesh = clean_up(std::move(mesh), limits, options.progress.part(simplifying, kPlacing),
-                    options.threads);
+    mesh = clean_up(std::move(mesh), limits, options.run.part(simplifying, kPlacing));
   }
   if (origins != nullptr) {
     const ThickenedCells thickened(options.thickened, frame);
@@ -456,9 +450,9 @@ TriangleMesh contour_split(ContourCells cells, const Box& root, const ContourOpt
     }
   }
   if (!places_first) {
-    frame.place(options.progress.part(kPlacing, 1.0), options.threads, &mesh.positions);
+    frame.place(options.run.part(kPlacing, 1.0), &mesh.positions);
   }
-  options.progress.report(1.0);
+  options.run.report(1.0);
   return {std::move(mesh.positions), std::move(mesh.triangles)};
 }
 }  // namespace
@@ -466,7 +460,7 @@ TriangleMesh contour_split(ContourCells cells, const Box& root, const ContourOpt
 ContourSlab contour_slab(const CellTree& cells, float isovalue, Interpolant interpolant,
                          const HeightRange& heights) {
   assert(!cells.levels.empty());
-  const ContourTree tree(cells, isovalue, Progress(), 1);
+  const ContourTree tree(cells, isovalue, Run(1));
   SurfaceVertices vertices(tree, RootFrame({{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}}), interpolant,
                            heights);
   const DualCells dual(tree, heights);
@@ -477,7 +471,7 @@ ContourSlab contour_slab(const CellTree& cells, float isovalue, Interpolant inte
   }
   ContourSlab slab;
   const std::size_t pairs = vertices.places().size();
-  LoopedMesh looped = join(Progress(), &vertices, &tasks);
+  LoopedMesh looped = join(Run(), &vertices, &tasks);
   slab.mesh = {std::move(looped.positions), std::move(looped.triangles)};
   const std::vector<std::int32_t> used = leave_out_unused(&slab.mesh);
   for (const std::int32_t vertex : used) {
@@ -508,10 +502,9 @@ TriangleMesh contour_refined(const CellTree& cells, const Box& root, const Conto
     return contour_any(ContourCells(cells), root, options, origins);
   }
   check_box(root, "bounds");
-  ContourCells fine(
-      refined(cells, cells.depth(), options.progress.part(0.0, kRefining), options.threads));
+  ContourCells fine(refined(cells, cells.depth(), options.run.part(0.0, kRefining)));
   ContourOptions rest = options;
-  rest.progress = options.progress.part(kRefining, 1.0);
+  rest.run = options.run.part(kRefining, 1.0);
   return contour_any(std::move(fine), root, rest, origins);
 }
 }  // namespace

@@ -418,7 +418,7 @@ void unfold(const VertexSamples& samples, const Vector3& cell, Crossings* crossi
 }
 
 void unfold_plain_loops(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
-                        const Progress& progress, int threads, FacetedMesh* mesh) {
+                        const Run& run, FacetedMesh* mesh) {
   const MeshView<std::int32_t> view{mesh->positions, mesh->triangles};
   Pairs pairs = plain_folds(view, *crossings);
   if (pairs.empty()) return;
@@ -440,7 +440,7 @@ void unfold_plain_loops(const VertexSamples& samples, const Vector3& cell, Cross
     slide(places, cell, Folds(&region, is_movable), crossings, &region);
     write_back(region, &mesh->positions, &mesh->triangles);
     const Flags is_changed = changed_triangles(before, region, mesh->triangles.size());
-    pairs = near_intersections(view, 0, is_changed, side, progress, threads);
+    pairs = near_intersections(view, 0, is_changed, side, run);
     if (pairs.empty()) {
       for (const std::size_t t : region.numbers) {
         if (is_changed[t] != 0) mesh->labels[t] = label_of(samples, mesh->triangles[t]);

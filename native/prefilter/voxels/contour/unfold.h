@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/contour/contour_tree.h"
 #include "prefilter/voxels/contour/looped_mesh.h"
 #include "prefilter/voxels/contour/root_frame.h"
@@ -33,6 +33,6 @@ void unfold(const VertexSamples& samples, const Vector3& cell, Crossings* crossi
 /// The same for loops without edges when other loops of the contour have edges. Changes that would
 /// cause intersections are omitted. Throws Error(kCancelled).
 void unfold_plain_loops(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
-                        const Progress& progress, int threads, FacetedMesh* mesh);
+                        const Run& run, FacetedMesh* mesh);
 
 }  // namespace prefilter

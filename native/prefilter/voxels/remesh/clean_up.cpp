@@ -78,8 +78,7 @@ EditedMesh edited_mesh(FacetedMesh mesh, const CleaningLimits& limits) {
 
 // Triangles with a flagged vertex.
 std::vector<std::uint32_t> triangles_at(const std::vector<Triangle>& triangles,
-                                        const Flags& is_flagged, const Progress& progress,
-                                        int threads) {
+                                        const Flags& is_flagged, const Run& run) {
   const auto count = static_cast<std::int64_t>(triangles.size());
   std::vector<std::vector<std::uint32_t>> lists(
       static_cast<std::size_t>(range_count(count, kRowsPerTask)));
@@ -94,7 +93,7 @@ std::vector<std::uint32_t> triangles_at(const std::vector<Triangle>& triangles,
       }
     }
   };
-  parallel_ranges(count, kRowsPerTask, threads, progress, find);
+  parallel_ranges(count, kRowsPerTask, run, find);
   std::vector<std::uint32_t> all;
   for (const auto& some : lists) all.insert(all.end(), some.begin(), some.end());
   return all;
@@ -110,18 +109,17 @@ void flag_corners(const std::vector<Triangle>& triangles, std::span<const std::u
 
 // Remaining narrow triangles and their surroundings, two triangles wide. Sets the owners of their
 // inner vertices.
-EditedBorders find_borders(const std::vector<std::vector<std::uint32_t>>& narrow,
-                           const Progress& progress, int threads, EditedMesh* edited) {
+EditedBorders find_borders(const std::vector<std::vector<std::uint32_t>>& narrow, const Run& run,
+                           EditedMesh* edited) {
   const FacetedMesh& mesh = edited->mesh;
   Flags is_near(mesh.positions.size());
   for (const std::vector<std::uint32_t>& some : narrow) {
     flag_corners(mesh.triangles, some, &is_near);
   }
   const std::vector<std::uint32_t> inner =
-      triangles_at(mesh.triangles, is_near, progress.part(0.0, 0.4), threads);
+      triangles_at(mesh.triangles, is_near, run.part(0.0, 0.4));
   flag_corners(mesh.triangles, inner, &is_near);
-  const std::vector<std::uint32_t> all =
-      triangles_at(mesh.triangles, is_near, progress.part(0.4, 0.8), threads);
+  const std::vector<std::uint32_t> all = triangles_at(mesh.triangles, is_near, run.part(0.4, 0.8));
   EditedBorders borders{parts_by_inner_vertices(mesh.triangles, all, is_near, &edited->firsts), {}};
   for (const std::uint32_t t : borders.parts.triangles) {
     borders.before.triangles.push_back(mesh.triangles[t]);
@@ -135,13 +133,14 @@ EditedBorders find_borders(const std::vector<std::vector<std::uint32_t>>& narrow
       }
     }
   }
-  progress.report(1.0);
+  run.report(1.0);
   return borders;
 }
 
-EditedBorders edit_borders(const std::vector<std::vector<std::uint32_t>>& narrow,
-                           const Progress& progress, int threads, EditedMesh* edited) {
-  EditedBorders borders = find_borders(narrow, progress.part(0.0, 0.5), threads, edited);
+EditedBorders edit_borders(const std::vector<std::vector<std::uint32_t>>& narrow, const Run& run,
+                           EditedMesh* edited) {
+  const Stages stages(run, {1, 1});
+  EditedBorders borders = find_borders(narrow, stages[0], edited);
   constexpr std::int64_t kPartsPerTask = 16;
   const auto edit = [&](std::int64_t begin, std::int64_t end) {
     PatchEditor editor(edited);
@@ -149,8 +148,7 @@ EditedBorders edit_borders(const std::vector<std::vector<std::uint32_t>>& narrow
       editor.edit(static_cast<std::uint32_t>(i), borders.parts.part(static_cast<std::size_t>(i)));
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(borders.parts.count()), kPartsPerTask, threads,
-                  progress.part(0.5, 1.0), edit);
+  parallel_ranges(static_cast<std::int64_t>(borders.parts.count()), kPartsPerTask, stages[1], edit);
   return borders;
 }
 
@@ -162,8 +160,7 @@ std::vector<std::uint32_t> edit_patch(const TriangleParts& patches, std::size_t 
   return editor.narrow();
 }
 
-RemainingTriangles find_remaining(const std::vector<Triangle>& triangles, const Progress& progress,
-                                  int threads) {
+RemainingTriangles find_remaining(const std::vector<Triangle>& triangles, const Run& run) {
   const auto rows = static_cast<std::int64_t>(triangles.size());
   std::vector<std::size_t> begins(static_cast<std::size_t>(range_count(rows, kRowsPerTask)) + 1);
   const auto count = [&](std::int64_t begin, std::int64_t end) {
@@ -172,7 +169,8 @@ RemainingTriangles find_remaining(const std::vector<Triangle>& triangles, const 
       if (triangles[static_cast<std::size_t>(t)] != kRemoved) ++some;
     }
   };
-  parallel_ranges(rows, kRowsPerTask, threads, progress.part(0.0, 0.3), count);
+  const Stages stages(run, {3, 7});
+  parallel_ranges(rows, kRowsPerTask, stages[0], count);
   std::partial_sum(begins.begin(), begins.end(), begins.begin());
   RemainingTriangles left;
   left.triangles.resize(begins.back());
@@ -187,7 +185,7 @@ RemainingTriangles find_remaining(const std::vector<Triangle>& triangles, const 
       ++place;
     }
   };
-  parallel_ranges(rows, kRowsPerTask, threads, progress.part(0.3, 1.0), fill);
+  parallel_ranges(rows, kRowsPerTask, stages[1], fill);
   return left;
 }
 
@@ -212,7 +210,7 @@ double angle_between(const MeshView<std::int32_t>& mesh,
 // For vertices on edges of the shape that are as sharp as folds: the largest angle between adjacent
 // normals; 0 for all other vertices.
 std::vector<float> wedge_turns(const MeshView<std::int32_t>& mesh,
-                               const std::vector<VertexKind>& kinds, const Progress& progress) {
+                               const std::vector<VertexKind>& kinds, const Run& run) {
   std::vector<float> turns(mesh.positions.size(), 0.0F);
   if (kinds.empty()) return turns;
   Flags is_suspect(mesh.triangles.size(), 0);
@@ -222,7 +220,7 @@ std::vector<float> wedge_turns(const MeshView<std::int32_t>& mesh,
           return kinds[static_cast<std::size_t>(v)] != VertexKind::kSurface;
         }) > 1;
   }
-  for (const auto& pair : folded_pairs(mesh, 0, is_suspect, progress)) {
+  for (const auto& pair : folded_pairs(mesh, 0, is_suspect, run)) {
     const auto turn = static_cast<float>(angle_between(mesh, pair));
     for (const std::int32_t v : shared_vertices(mesh.triangles[pair[0]], mesh.triangles[pair[1]])) {
       float& most = turns[static_cast<std::size_t>(v)];
@@ -236,15 +234,14 @@ std::vector<float> wedge_turns(const MeshView<std::int32_t>& mesh,
 // since the first or the last search, and earlier hits; all other pairs are known to be disjoint.
 class CrossingSearch {
  public:
-  CrossingSearch(const FacetedMesh& mesh, const std::vector<Triangle>& original,
-                 const Progress& progress, int threads)
+  CrossingSearch(const FacetedMesh& mesh, const std::vector<Triangle>& original, const Run& run)
       : original_(original),
-        threads_(threads),
+        threads_(run.threads()),
         side_(cube_side({mesh.positions, original})),
-        wedge_turns_(wedge_turns({mesh.positions, original}, mesh.kinds, progress)) {}
+        wedge_turns_(wedge_turns({mesh.positions, original}, mesh.kinds, run)) {}
 
   // Intersecting or folded triangles that differ from the original mesh.
-  std::vector<std::uint32_t> find(const FacetedMesh& mesh, const Progress& progress) {
+  std::vector<std::uint32_t> find(const FacetedMesh& mesh, const Run& run) {
     Flags is_suspect = changed(first_.empty() ? original_ : last_, mesh.triangles);
     if (first_.empty()) {
       first_ = mesh.triangles;
@@ -257,7 +254,7 @@ class CrossingSearch {
     }
     last_ = mesh.triangles;
     for (const std::uint32_t t : found_) is_suspect[t] = 1;
-    const std::vector<std::uint32_t> crossing = find_among(mesh, is_suspect, progress);
+    const std::vector<std::uint32_t> crossing = find_among(mesh, is_suspect, run);
     found_.insert(found_.end(), crossing.begin(), crossing.end());
     return crossing;
   }
@@ -282,10 +279,10 @@ class CrossingSearch {
   }
 
   std::vector<std::uint32_t> find_among(const FacetedMesh& mesh, const Flags& is_suspect,
-                                        const Progress& progress) const {
+                                        const Run& run) const {
     const MeshView<std::int32_t> all{mesh.positions, mesh.triangles};
-    const NearTriangles near = near_triangles(
-        all, 0, keep_rough_suspects(all, 0, is_suspect, side_, progress), side_, progress);
+    const NearTriangles near =
+        near_triangles(all, 0, keep_rough_suspects(all, 0, is_suspect, side_, run), side_, run);
     std::vector<std::uint32_t> crossing;
     const auto add = [&](const std::vector<std::array<std::uint32_t, 2>>& pairs) {
       for (const auto& pair : pairs) {
@@ -296,9 +293,8 @@ class CrossingSearch {
       }
     };
     const MeshView<std::int32_t> view{mesh.positions, near.triangles};
-    add(intersecting_triangles(view, near.is_suspect, progress, threads_));
-    std::vector<std::array<std::uint32_t, 2>> folds =
-        folded_pairs(view, 0, near.is_suspect, progress);
+    add(intersecting_triangles(view, near.is_suspect, run));
+    std::vector<std::array<std::uint32_t, 2>> folds = folded_pairs(view, 0, near.is_suspect, run);
     std::erase_if(folds, [&](const auto& pair) {
       const std::vector<std::int32_t> side =
           shared_vertices(view.triangles[pair[0]], view.triangles[pair[1]]);
@@ -337,9 +333,8 @@ void restore_patch(const TriangleParts& patches, std::size_t patch, const Snapsh
 // Edits patches with intersecting triangles again, with the vertices of these fixed, until there
 // are none.
 void edit_again(const TriangleParts& patches, const Snapshot& original,
-                std::vector<std::uint32_t> crossing, Progress remaining, int threads,
-                CrossingSearch* search, EditedMesh* edited,
-                std::vector<std::vector<std::uint32_t>>* narrow) {
+                std::vector<std::uint32_t> crossing, Run remaining, CrossingSearch* search,
+                EditedMesh* edited, std::vector<std::vector<std::uint32_t>>* narrow) {
   const FacetedMesh& mesh = edited->mesh;
   edited->is_fixed.assign(mesh.positions.size(), 0);
   const std::vector<std::uint32_t> patch_of =
@@ -355,16 +350,16 @@ void edit_again(const TriangleParts& patches, const Snapshot& original,
       restore_patch(patches, patch, original, edited);
       (*narrow)[patch] = edit_patch(patches, patch, edited);
     };
-    parallel_for(static_cast<std::int64_t>(patches.count()), threads, remaining.part(0.0, 0.3),
-                 redo);
-    crossing = search->find(mesh, remaining.part(0.3, 0.5));
+    const Stages stages(remaining, {3, 2, 5});
+    parallel_for(static_cast<std::int64_t>(patches.count()), stages[0], redo);
+    crossing = search->find(mesh, stages[1]);
     // The number of rounds is unknown, so each gets half of the remaining progress.
-    remaining = remaining.part(0.5, 1.0);
+    remaining = stages[2];
   }
 }
 
 // Restores border regions with intersecting triangles until there are none.
-void undo_borders(const EditedBorders& borders, Progress remaining, CrossingSearch* search,
+void undo_borders(const EditedBorders& borders, Run remaining, CrossingSearch* search,
                   FacetedMesh* mesh) {
   const std::vector<std::uint32_t> border_of =
       borders.parts.part_numbers(mesh->triangles.size(), EditedMesh::kUnowned);
@@ -372,38 +367,39 @@ void undo_borders(const EditedBorders& borders, Progress remaining, CrossingSear
   bool is_any = true;
   while (is_any) {
     is_any = false;
-    for (const std::uint32_t t : search->find(*mesh, remaining.part(0.0, 0.5))) {
+    const Stages stages(remaining, {1, 1});
+    for (const std::uint32_t t : search->find(*mesh, stages[0])) {
       const std::uint32_t border = border_of[t];
       if (border == EditedMesh::kUnowned || is_undone[border] != 0) continue;
       is_undone[border] = 1;
       borders.undo(border, mesh);
       is_any = true;
     }
-    remaining = remaining.part(0.5, 1.0);
+    remaining = stages[1];
   }
 }
 
 // Reverts changes that make triangles intersect or fold.
 void undo_conflicts(const TriangleParts& patches, const Snapshot& original, EditedBorders borders,
-                    const Progress& progress, int threads, EditedMesh* edited,
+                    const Run& run, EditedMesh* edited,
                     std::vector<std::vector<std::uint32_t>>* narrow) {
   FacetedMesh& mesh = edited->mesh;
-  CrossingSearch search(mesh, original.triangles, progress, threads);
-  if (search.find(mesh, progress.part(0.0, 0.4)).empty()) return;
+  CrossingSearch search(mesh, original.triangles, run);
+  const Stages stages(run, {4, 1, 1, 2, 1, 1});
+  if (search.find(mesh, stages[0]).empty()) return;
   for (std::size_t i = 0; i < borders.parts.count(); ++i) borders.undo(i, &mesh);
   std::fill(edited->owners.begin(), edited->owners.end(), EditedMesh::kUnowned);
-  find_owners(patches, original.triangles, progress.part(0.4, 0.5), threads, &edited->owners);
-  std::vector<std::uint32_t> crossing = search.find(mesh, progress.part(0.5, 0.6));
-  edit_again(patches, original, std::move(crossing), progress.part(0.6, 0.8), threads, &search,
-             edited, narrow);
-  borders = edit_borders(*narrow, progress.part(0.8, 0.9), threads, edited);
-  undo_borders(borders, progress.part(0.9, 1.0), &search, &mesh);
+  find_owners(patches, original.triangles, stages[1], &edited->owners);
+  std::vector<std::uint32_t> crossing = search.find(mesh, stages[2]);
+  edit_again(patches, original, std::move(crossing), stages[3], &search, edited, narrow);
+  borders = edit_borders(*narrow, stages[4], edited);
+  undo_borders(borders, stages[5], &search, &mesh);
 }
 
 // Compacts the remaining triangles and vertices.
-void drop_removed(const Progress& progress, int threads, FacetedMesh* result) {
+void drop_removed(const Run& run, FacetedMesh* result) {
   FacetedMesh& mesh = *result;
-  RemainingTriangles left = find_remaining(mesh.triangles, progress.part(0.0, 0.2), threads);
+  RemainingTriangles left = find_remaining(mesh.triangles, run.part(0.0, 0.2));
   mesh.triangles = std::move(left.triangles);
   if (!mesh.labels.empty()) {
     for (std::size_t i = 0; i < left.old_indices.size(); ++i) {
@@ -421,7 +417,7 @@ void drop_removed(const Progress& progress, int threads, FacetedMesh* result) {
       }
     }
   };
-  parallel_ranges(count, kRowsPerTask, threads, progress.part(0.2, 0.5), mark);
+  parallel_ranges(count, kRowsPerTask, run.part(0.2, 0.5), mark);
   std::int32_t next = 0;
   for (std::size_t v = 0; v < old_indices.size(); ++v) {
     if (old_indices[v] < 0) continue;
@@ -439,28 +435,26 @@ void drop_removed(const Progress& progress, int threads, FacetedMesh* result) {
       }
     }
   };
-  parallel_ranges(count, kRowsPerTask, threads, progress.part(0.6, 1.0), rename);
+  parallel_ranges(count, kRowsPerTask, run.part(0.6, 1.0), rename);
 }
 }  // namespace
 
-FacetedMesh clean_up(FacetedMesh mesh, const CleaningLimits& limits, const Progress& progress,
-                     int threads) {
+FacetedMesh clean_up(FacetedMesh mesh, const CleaningLimits& limits, const Run& run) {
   if (mesh.triangles.empty()) return {};
   const Snapshot original = {mesh.triangles, mesh.labels};
   EditedMesh edited = edited_mesh(std::move(mesh), limits);
-  const TriangleParts patches = parts_along_vertices(
-      original.triangles, edited.mesh.positions.size(), progress.part(0.0, 0.06), threads);
-  find_owners(patches, original.triangles, progress.part(0.06, 0.1), threads, &edited.owners);
+  const Stages stages(run, {3, 2, 20, 5, 15, 5});
+  const TriangleParts patches =
+      parts_along_vertices(original.triangles, edited.mesh.positions.size(), stages[0]);
+  find_owners(patches, original.triangles, stages[1], &edited.owners);
   std::vector<std::vector<std::uint32_t>> narrow(patches.count());
-  parallel_for(static_cast<std::int64_t>(patches.count()), threads, progress.part(0.1, 0.5),
-               [&](std::int64_t i) {
-                 const auto patch = static_cast<std::size_t>(i);
-                 narrow[patch] = edit_patch(patches, patch, &edited);
-               });
-  EditedBorders borders = edit_borders(narrow, progress.part(0.5, 0.6), threads, &edited);
-  undo_conflicts(patches, original, std::move(borders), progress.part(0.6, 0.9), threads, &edited,
-                 &narrow);
-  drop_removed(progress.part(0.9, 1.0), threads, &edited.mesh);
+  parallel_for(static_cast<std::int64_t>(patches.count()), stages[2], [&](std::int64_t i) {
+    const auto patch = static_cast<std::size_t>(i);
+    narrow[patch] = edit_patch(patches, patch, &edited);
+  });
+  EditedBorders borders = edit_borders(narrow, stages[3], &edited);
+  undo_conflicts(patches, original, std::move(borders), stages[4], &edited, &narrow);
+  drop_removed(stages[5], &edited.mesh);
   return std::move(edited.mesh);
 }
 

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/remesh/faceted_mesh.h"
 
 namespace prefilter {
@@ -27,7 +27,6 @@ struct CleaningLimits {
 /// have nearby indices.
 ///
 /// Side lengths may range from 1e-70 to 1e70. Throws Error(kCancelled).
-FacetedMesh clean_up(FacetedMesh mesh, const CleaningLimits& limits, const Progress& progress,
-                     int threads);
+FacetedMesh clean_up(FacetedMesh mesh, const CleaningLimits& limits, const Run& run);
 
 }  // namespace prefilter

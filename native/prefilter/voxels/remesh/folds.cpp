@@ -95,8 +95,8 @@ std::vector<FoldSide> sides_between(const MeshView<std::int32_t>& mesh, std::siz
 std::vector<std::array<std::uint32_t, 2>> folded_pairs(const MeshView<std::int32_t>& mesh,
                                                        std::size_t first,
                                                        std::span<const std::uint8_t> is_suspect,
-                                                       const Progress& progress) {
-  CancelCheck cancel_check(progress);
+                                                       const Run& run) {
+  CancelCheck cancel_check(run);
   const auto is_counted = [&](std::size_t t) { return is_suspect.empty() || is_suspect[t] != 0; };
   Flags is_touched(mesh.positions.size(), 0);
   for (std::size_t t = first; t < mesh.triangles.size(); ++t) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -22,6 +22,6 @@ inline constexpr double kFold = -0.5;
 std::vector<std::array<std::uint32_t, 2>> folded_pairs(const MeshView<std::int32_t>& mesh,
                                                        std::size_t first,
                                                        std::span<const std::uint8_t> is_suspect,
-                                                       const Progress& progress);
+                                                       const Run& run);
 
 }  // namespace prefilter

@@ -53,22 +53,21 @@ struct Extent {
 };
 
 // Extent of all positions, or of the triangles' corners if these are fewer.
-Extent extent_of(const Mesh& mesh, const Progress& progress, int threads) {
+Extent extent_of(const Mesh& mesh, const Run& run) {
   const bool is_small = 3 * mesh.triangles.size() < mesh.positions.size();
   const auto rows =
       static_cast<std::int64_t>(is_small ? mesh.triangles.size() : mesh.positions.size());
   std::vector<Extent> extents(static_cast<std::size_t>(range_count(rows, kTrianglesPerTask)));
-  parallel_ranges(
-      rows, kTrianglesPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
-        Extent& extent = extents[static_cast<std::size_t>(begin / kTrianglesPerTask)];
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-          if (is_small) {
-            for (const Vector3& corner : mesh.corners(i)) extent.include(corner);
-          } else {
-            extent.include(mesh.positions[i]);
-          }
-        }
-      });
+  parallel_ranges(rows, kTrianglesPerTask, run, [&](std::int64_t begin, std::int64_t end) {
+    Extent& extent = extents[static_cast<std::size_t>(begin / kTrianglesPerTask)];
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      if (is_small) {
+        for (const Vector3& corner : mesh.corners(i)) extent.include(corner);
+      } else {
+        extent.include(mesh.positions[i]);
+      }
+    }
+  });
   Extent all;
   for (const Extent& extent : extents) all.include(extent);
   return all;
@@ -138,8 +137,7 @@ void find_at(const Mesh& mesh, const TriangleTree& tree, std::size_t at, NearLea
   }
 }
 
-std::vector<Pair> find_all(const Mesh& mesh, const TriangleTree& tree, const Progress& progress,
-                           int threads) {
+std::vector<Pair> find_all(const Mesh& mesh, const TriangleTree& tree, const Run& run) {
   const auto leaves = static_cast<std::int64_t>(tree.leaves.size());
   std::vector<std::vector<Pair>> lists(
       static_cast<std::size_t>(range_count(leaves, kLeavesPerTask)));
@@ -150,28 +148,26 @@ std::vector<Pair> find_all(const Mesh& mesh, const TriangleTree& tree, const Pro
       find_at(mesh, tree, static_cast<std::size_t>(leaf), &near, &pairs);
     }
   };
-  parallel_ranges(leaves, kLeavesPerTask, threads, progress.part(0.0, 0.95), find_some);
+  const Stages stages(run, {19, 1});
+  parallel_ranges(leaves, kLeavesPerTask, stages[0], find_some);
   std::vector<Pair> all;
   for (const std::vector<Pair>& pairs : lists) all.insert(all.end(), pairs.begin(), pairs.end());
-  sort_in_parallel(&all, progress.part(0.95, 1.0), threads);
+  sort_in_parallel(&all, stages[1]);
   return all;
 }
 
 }  // namespace
 
 std::vector<std::array<std::uint32_t, 2>> intersecting_triangles(
-    const MeshView<std::int32_t>& mesh, std::span<const std::uint8_t> is_suspect,
-    const Progress& progress, int threads) {
+    const MeshView<std::int32_t>& mesh, std::span<const std::uint8_t> is_suspect, const Run& run) {
   if (mesh.triangles.empty()) return {};
-  const Extent extent = extent_of(mesh, progress.part(0.0, 0.05), threads);
+  const Extent extent = extent_of(mesh, run.part(0.0, 0.05));
   if (extent.largest > kLargestExact || extent.smallest < kSmallestExact) {
     const std::vector<Vector3> scaled = in_exact_range(mesh.positions, extent.largest);
-    return intersecting_triangles({scaled, mesh.triangles}, is_suspect, progress.part(0.05, 1.0),
-                                  threads);
+    return intersecting_triangles({scaled, mesh.triangles}, is_suspect, run.part(0.05, 1.0));
   }
-  const TriangleTree tree =
-      build_tree(mesh, is_suspect, extent.box, progress.part(0.05, 0.3), threads);
-  return find_all(mesh, tree, progress.part(0.3, 1.0), threads);
+  const TriangleTree tree = build_tree(mesh, is_suspect, extent.box, run.part(0.05, 0.3));
+  return find_all(mesh, tree, run.part(0.3, 1.0));
 }
 
 }  // namespace prefilter

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -23,7 +23,6 @@ namespace prefilter {
 /// number of threads. Time is proportional to the number of triangles and of pairs whose boxes
 /// overlap. Indices must be valid and coordinates finite. Throws Error(kCancelled).
 std::vector<std::array<std::uint32_t, 2>> intersecting_triangles(
-    const MeshView<std::int32_t>& mesh, std::span<const std::uint8_t> is_suspect,
-    const Progress& progress, int threads);
+    const MeshView<std::int32_t>& mesh, std::span<const std::uint8_t> is_suspect, const Run& run);
 
 }  // namespace prefilter

@@ -174,7 +174,7 @@ CornerPoints corners_of_box(const MeshView<std::int32_t>& mesh, std::size_t begi
 
 std::vector<std::uint8_t> keep_rough_suspects(const MeshView<std::int32_t>& mesh, std::size_t first,
                                               std::vector<std::uint8_t> is_suspect, double side,
-                                              const Progress& progress) {
+                                              const Run& run) {
   // The filter takes about as long as testing a tenth of the triangles.
   constexpr std::size_t kTrianglesPerSuspect = 10;
   const auto suspects = static_cast<std::size_t>(
@@ -182,7 +182,7 @@ std::vector<std::uint8_t> keep_rough_suspects(const MeshView<std::int32_t>& mesh
                     [](std::uint8_t flag) { return flag != 0; }));
   if (kTrianglesPerSuspect * suspects < mesh.triangles.size() - first) return is_suspect;
   NormalCubes cubes(side, mesh.triangles.size() - first);
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   const auto visit = [&](const auto& work) {
     for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
       cancel_check.step();
@@ -198,7 +198,7 @@ std::vector<std::uint8_t> keep_rough_suspects(const MeshView<std::int32_t>& mesh
 
 NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t first,
                              std::span<const std::uint8_t> is_suspect, double side,
-                             const Progress& progress) {
+                             const Run& run) {
   std::size_t count = 0;
   for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
     if (is_suspect[t] != 0 && mesh.triangles[t][0] >= 0) ++count;
@@ -209,7 +209,7 @@ NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t fir
   const bool is_any = 2 * count > mesh.triangles.size() - first;
   CubeSet cubes(side, is_any ? 0 : count);
   CubeSet large_cubes(kLargeCubeSides * side, is_any ? 0 : count);
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   for (std::size_t t = first; t < mesh.triangles.size() && !is_any; ++t) {
     cancel_check.step();
     if (is_suspect[t] == 0 || mesh.triangles[t][0] < 0) continue;
@@ -237,10 +237,10 @@ NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t fir
 
 std::vector<std::array<std::uint32_t, 2>> near_intersections(
     const MeshView<std::int32_t>& mesh, std::size_t first, std::span<const std::uint8_t> is_suspect,
-    double side, const Progress& progress, int threads) {
-  const NearTriangles near = near_triangles(mesh, first, is_suspect, side, progress);
+    double side, const Run& run) {
+  const NearTriangles near = near_triangles(mesh, first, is_suspect, side, run);
   std::vector<std::array<std::uint32_t, 2>> pairs =
-      intersecting_triangles({mesh.positions, near.triangles}, near.is_suspect, progress, threads);
+      intersecting_triangles({mesh.positions, near.triangles}, near.is_suspect, run);
   for (auto& pair : pairs) {
     for (std::uint32_t& t : pair) t = near.numbers[t];
   }

@@ -18,7 +18,7 @@ using Triangle = std::array<std::int32_t, 3>;
 
 std::vector<std::uint32_t> order_along_curve(std::span<const Vector3> positions,
                                              std::span<const Triangle> triangles, int number,
-                                             const Progress& progress, int threads) {
+                                             const Run& run) {
   Box box = kEmptyBox;
   for (const Vector3& p : positions) box.include(p);
   const double size = std::max({box.size(0), box.size(1), box.size(2)});
@@ -39,7 +39,7 @@ std::vector<std::uint32_t> order_along_curve(std::span<const Vector3> positions,
       keys[static_cast<std::size_t>(t)] = static_cast<std::uint32_t>(morton_index(cell));
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(count), kGrain, threads, progress, set_keys);
+  parallel_ranges(static_cast<std::int64_t>(count), kGrain, run, set_keys);
   std::vector<std::uint32_t> begins((std::size_t{1} << (3 * bits)) + 1, 0);
   for (const std::uint32_t key : keys) ++begins[key + 1];
   for (std::size_t i = 1; i < begins.size(); ++i) begins[i] += begins[i - 1];
@@ -48,8 +48,7 @@ std::vector<std::uint32_t> order_along_curve(std::span<const Vector3> positions,
   return order;
 }
 
-void find_owners(std::span<const Triangle> triangles, const Progress& progress, int threads,
-                 PatchDivision* division) {
+void find_owners(std::span<const Triangle> triangles, const Run& run, PatchDivision* division) {
   const auto own = [&](std::int64_t patch) {
     const auto owner = static_cast<std::int32_t>(patch);
     for (const std::uint32_t t : division->triangles(static_cast<std::size_t>(patch))) {
@@ -65,23 +64,22 @@ void find_owners(std::span<const Triangle> triangles, const Progress& progress, 
       }
     }
   };
-  parallel_for(static_cast<std::int64_t>(division->count()), threads, progress, own);
+  parallel_for(static_cast<std::int64_t>(division->count()), run, own);
 }
 }  // namespace
 
 PatchDivision divide_into_patches(std::span<const Vector3> positions,
-                                  std::span<const Triangle> triangles, int number,
-                                  const Progress& progress, int threads) {
+                                  std::span<const Triangle> triangles, int number, const Run& run) {
   PatchDivision division;
+  const Stages stages(run, {7, 3});
   if (triangles.size() <= PatchDivision::kTriangles) {
     division.order.resize(triangles.size());
     std::iota(division.order.begin(), division.order.end(), 0U);
   } else {
-    division.order =
-        order_along_curve(positions, triangles, number, progress.part(0.0, 0.7), threads);
+    division.order = order_along_curve(positions, triangles, number, stages[0]);
   }
   division.owners.assign(positions.size(), PatchDivision::kUnowned);
-  find_owners(triangles, progress.part(0.7, 1.0), threads, &division);
+  find_owners(triangles, stages[1], &division);
   return division;
 }
 

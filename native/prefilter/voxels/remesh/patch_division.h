@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -35,6 +35,6 @@ struct PatchDivision {
 /// each `number`. Throws Error(kCancelled).
 PatchDivision divide_into_patches(std::span<const Vector3> positions,
                                   std::span<const std::array<std::int32_t, 3>> triangles,
-                                  int number, const Progress& progress, int threads);
+                                  int number, const Run& run);
 
 }  // namespace prefilter

@@ -12,8 +12,7 @@
 namespace prefilter {
 
 std::vector<std::array<std::uint32_t, 2>> self_intersections(const InputMesh& mesh,
-                                                             const Progress& progress,
-                                                             int threads) {
+                                                             const Run& run) {
   check_mesh(mesh, kLargestCoordinate);
   constexpr auto kMostVertices = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
   if (mesh.positions.size() > kMostVertices) {
@@ -29,7 +28,7 @@ std::vector<std::array<std::uint32_t, 2>> self_intersections(const InputMesh& me
     triangles.push_back(
         {static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), static_cast<std::int32_t>(c)});
   }
-  auto pairs = intersecting_triangles({positions, triangles}, {}, progress, threads);
+  auto pairs = intersecting_triangles({positions, triangles}, {}, run);
   // intersecting_triangles pairs a triangle without area with itself.
   std::erase_if(pairs, [](const auto& pair) { return pair[0] == pair[1]; });
   return pairs;

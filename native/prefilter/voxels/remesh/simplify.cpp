@@ -37,7 +37,7 @@ void leave_out_unused(FacetedMesh* mesh) {
 
 }  // namespace
 
-FacetedMesh simplify(FacetedMesh mesh, double tolerance, const Progress& progress, int threads) {
+FacetedMesh simplify(FacetedMesh mesh, double tolerance, const Run& run) {
   if (!(tolerance >= 0.0 && tolerance <= kLargestCoordinate)) {
     throw_invalid("tolerance: found " + to_text(tolerance) + "; allowed are 0 and more");
   }
@@ -46,12 +46,12 @@ FacetedMesh simplify(FacetedMesh mesh, double tolerance, const Progress& progres
     Facets facets;
     facets.triangles = std::move(mesh.triangles);
     facets.labels = std::move(mesh.labels);
-    simplify_facets(mesh, scale, {}, progress, threads, &facets);
+    simplify_facets(mesh, scale, {}, run, &facets);
     mesh.triangles = std::move(facets.triangles);
     mesh.labels = std::move(facets.labels);
     leave_out_unused(&mesh);
   }
-  progress.report(1.0);
+  run.report(1.0);
   return mesh;
 }
 

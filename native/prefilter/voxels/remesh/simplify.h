@@ -3,7 +3,7 @@
 // Simplifies flat or gently curved parts of a mesh.
 #pragma once
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/remesh/faceted_mesh.h"
 
 namespace prefilter {
@@ -17,6 +17,6 @@ namespace prefilter {
 ///
 /// A tolerance of 0 returns the mesh unchanged. Throws Error if the tolerance is negative or not
 /// finite; Error(kCancelled).
-FacetedMesh simplify(FacetedMesh mesh, double tolerance, const Progress& progress, int threads);
+FacetedMesh simplify(FacetedMesh mesh, double tolerance, const Run& run);
 
 }  // namespace prefilter

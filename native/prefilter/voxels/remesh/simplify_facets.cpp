@@ -135,8 +135,7 @@ struct Conflicts {
 
 Conflicts find_conflicts(const std::vector<Vector3>& positions,
                          const std::vector<SimplifiedPatch>& parts,
-                         const std::vector<std::uint8_t>& is_unknown, double side,
-                         const Progress& progress, int threads) {
+                         const std::vector<std::uint8_t>& is_unknown, double side, const Run& run) {
   std::vector<Triangle> triangles;
   std::vector<std::uint8_t> is_suspect;
   std::vector<std::uint32_t> patches;
@@ -152,12 +151,12 @@ Conflicts find_conflicts(const std::vector<Vector3>& positions,
     is_suspect.resize(triangles.size(), 0);
   }
   Conflicts conflicts;
-  const NearTriangles near = near_triangles({positions, triangles}, 0, is_suspect, side, progress);
+  const NearTriangles near = near_triangles({positions, triangles}, 0, is_suspect, side, run);
   if (near.triangles.empty()) return conflicts;
   const MeshView<std::int32_t> view{positions, near.triangles};
-  auto pairs = intersecting_triangles(view, near.is_suspect, progress, threads);
+  auto pairs = intersecting_triangles(view, near.is_suspect, run);
   for (auto& pair : pairs) pair = {near.numbers[pair[0]], near.numbers[pair[1]]};
-  for (const auto& fold : folded_pairs(view, 0, near.is_suspect, progress)) {
+  for (const auto& fold : folded_pairs(view, 0, near.is_suspect, run)) {
     // Edges between regions are edges of the shape, which may have any angle.
     const std::array<std::uint32_t, 2> pair = {near.numbers[fold[0]], near.numbers[fold[1]]};
     if (labels.empty() || labels[pair[0]] == labels[pair[1]]) pairs.push_back(pair);
@@ -179,14 +178,15 @@ Conflicts find_conflicts(const std::vector<Vector3>& positions,
 
 // Freezes the vertices whose removal led to intersections, and simplifies their patches again.
 void repair(const FacetedMesh& mesh, const Facets& facets, const PatchDivision& division,
-            const SimplifyScale& scale, const Progress& progress, int threads, VertexStates* states,
+            const SimplifyScale& scale, const Run& run, VertexStates* states,
             std::vector<SimplifiedPatch>* parts) {
   std::vector<std::uint8_t> is_unknown(parts->size(), 1);
   for (int round = 0;; ++round) {
     const double begin = 1.0 - std::ldexp(1.0, -round);
-    const Progress step = progress.part(begin, 1.0 - std::ldexp(1.0, -round - 1));
-    const Conflicts conflicts = find_conflicts(mesh.positions, *parts, is_unknown, cube_side(scale),
-                                               step.part(0.0, 0.5), threads);
+    const Run step = run.part(begin, 1.0 - std::ldexp(1.0, -round - 1));
+    const Stages stages(step, {1, 1});
+    const Conflicts conflicts =
+        find_conflicts(mesh.positions, *parts, is_unknown, cube_side(scale), stages[0]);
     if (conflicts.patches.empty()) return;
     is_unknown.assign(parts->size(), 0);
     for (const std::int64_t patch : conflicts.patches)
@@ -196,8 +196,7 @@ void repair(const FacetedMesh& mesh, const Facets& facets, const PatchDivision& 
       freeze(facets.triangles, division, patch, conflicts.is_bad, round >= kMaxRepairs, states);
       (*parts)[patch] = simplified(mesh, facets, division, patch, scale, states);
     };
-    parallel_for(static_cast<std::int64_t>(conflicts.patches.size()), threads, step.part(0.5, 1.0),
-                 rerun);
+    parallel_for(static_cast<std::int64_t>(conflicts.patches.size()), stages[1], rerun);
   }
 }
 
@@ -222,21 +221,22 @@ Facets joined(std::vector<SimplifiedPatch>* parts) {
 // Runs a pass; returns whether another one is worthwhile. The triangles are in `facets`, not in
 // `mesh`.
 bool run_pass(int number, const FacetedMesh& mesh, const SimplifyScale& scale,
-              std::span<const std::uint8_t> is_open, const Progress& progress, int threads,
-              Facets* facets, VertexStates* states) {
+              std::span<const std::uint8_t> is_open, const Run& run, Facets* facets,
+              VertexStates* states) {
   const std::size_t count = facets->triangles.size();
-  PatchDivision division = divide_into_patches(mesh.positions, facets->triangles, number,
-                                               progress.part(0.0, 0.1), threads);
+  const Stages stages(run, {1, 7, 2});
+  PatchDivision division =
+      divide_into_patches(mesh.positions, facets->triangles, number, stages[0]);
   for (std::size_t v = 0; v < is_open.size(); ++v) {
     if (is_open[v] != 0) division.owners[v] = PatchDivision::kShared;
   }
   std::vector<SimplifiedPatch> parts(division.count());
-  const auto run = [&](std::int64_t i) {
+  const auto simplify_patch = [&](std::int64_t i) {
     const auto patch = static_cast<std::size_t>(i);
     parts[patch] = simplified(mesh, *facets, division, patch, scale, states);
   };
-  parallel_for(static_cast<std::int64_t>(parts.size()), threads, progress.part(0.1, 0.8), run);
-  repair(mesh, *facets, division, scale, progress.part(0.8, 1.0), threads, states, &parts);
+  parallel_for(static_cast<std::int64_t>(parts.size()), stages[1], simplify_patch);
+  repair(mesh, *facets, division, scale, stages[2], states, &parts);
   *facets = joined(&parts);
   for (std::size_t v = 0; v < division.owners.size(); ++v) {
     if (division.owners[v] >= 0) states->is_waiting[v] = 0;
@@ -265,13 +265,12 @@ SimplifyScale scale_of(std::span<const Vector3> positions,
 }
 
 void simplify_facets(const FacetedMesh& mesh, const SimplifyScale& scale, FixedVertices fixed,
-                     const Progress& progress, int threads, Facets* facets) {
+                     const Run& run, Facets* facets) {
   VertexStates states(mesh.positions.size(), std::move(fixed.is_kept));
   double begin = 0.0;
   for (int i = 0; i < kMaxPasses; ++i) {
     const double end = begin + 0.6 * (1.0 - begin);
-    if (!run_pass(i, mesh, scale, fixed.is_open, progress.part(begin, end), threads, facets,
-                  &states)) {
+    if (!run_pass(i, mesh, scale, fixed.is_open, run.part(begin, end), facets, &states)) {
       break;
     }
     begin = end;

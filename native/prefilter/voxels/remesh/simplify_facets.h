@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/remesh/faceted_mesh.h"
 #include "prefilter/voxels/remesh/facets.h"
 
@@ -33,6 +33,6 @@ struct FixedVertices {
 /// Simplifies facets over the positions and kinds of a mesh; see simplify.h. They may have been
 /// simplified before, in which case their errors accumulate.
 void simplify_facets(const FacetedMesh& mesh, const SimplifyScale& scale, FixedVertices fixed,
-                     const Progress& progress, int threads, Facets* facets);
+                     const Run& run, Facets* facets);
 
 }  // namespace prefilter

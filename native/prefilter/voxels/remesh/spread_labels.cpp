@@ -77,11 +77,11 @@ Neighbors neighbors_of(const FacetedMesh& mesh) {
 }
 }  // namespace
 
-int spread_labels(FacetedMesh* mesh, std::int32_t count, const Progress& progress) {
+int spread_labels(FacetedMesh* mesh, std::int32_t count, const Run& run) {
   const std::size_t triangles = mesh->triangles.size();
   mesh->labels.resize(triangles, kNoLabel);
   const Neighbors beside = neighbors_of(*mesh);
-  progress.report(0.8);
+  run.report(0.8);
   std::vector<std::uint32_t> waiting;
   const auto spread = [&] {
     for (std::size_t next = 0; next < waiting.size(); ++next) {
@@ -98,7 +98,7 @@ int spread_labels(FacetedMesh* mesh, std::int32_t count, const Progress& progres
     if (mesh->labels[t] != kNoLabel) waiting.push_back(static_cast<std::uint32_t>(t));
   }
   spread();
-  progress.report(0.9);
+  run.report(0.9);
   int added = 0;
   for (std::size_t t = 0; t < triangles; ++t) {
     if (mesh->labels[t] != kNoLabel) continue;
@@ -106,7 +106,7 @@ int spread_labels(FacetedMesh* mesh, std::int32_t count, const Progress& progres
     waiting.push_back(static_cast<std::uint32_t>(t));
     spread();
   }
-  progress.report(1.0);
+  run.report(1.0);
   return added;
 }
 

@@ -3,7 +3,7 @@
 // Completes the labels of a mesh.
 #pragma once
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/remesh/faceted_mesh.h"
 
 namespace prefilter {
@@ -11,6 +11,6 @@ namespace prefilter {
 /// Gives triangles of kNoLabel the label of triangles connected to them by edges; components
 /// without any label get new ones. Returns the number of new labels, which start at `count`, the
 /// number of existing ones. Throws Error(kCancelled).
-int spread_labels(FacetedMesh* mesh, std::int32_t count, const Progress& progress);
+int spread_labels(FacetedMesh* mesh, std::int32_t count, const Run& run);
 
 }  // namespace prefilter

@@ -31,7 +31,7 @@ std::vector<std::uint32_t> TriangleParts::part_numbers(std::size_t count,
 }
 
 TriangleParts parts_along_vertices(std::span<const Triangle> triangles, std::size_t vertex_count,
-                                   const Progress& progress, int threads) {
+                                   const Run& run) {
   int bits = kPartBits;
   while ((vertex_count >> bits) >= kMaxParts) ++bits;
   const std::size_t count = (vertex_count >> bits) + 1;
@@ -49,7 +49,8 @@ TriangleParts parts_along_vertices(std::span<const Triangle> triangles, std::siz
     std::size_t* const counts = &places[static_cast<std::size_t>(begin / rows_per_task) * count];
     for (std::int64_t t = begin; t < end; ++t) ++counts[part_of(static_cast<std::size_t>(t))];
   };
-  parallel_ranges(rows, rows_per_task, threads, progress.part(0.0, 0.5), add_up);
+  const Stages stages(run, {1, 1});
+  parallel_ranges(rows, rows_per_task, stages[0], add_up);
   TriangleParts parts;
   std::size_t next = 0;
   for (std::size_t part = 0; part < count; ++part) {
@@ -66,12 +67,12 @@ TriangleParts parts_along_vertices(std::span<const Triangle> triangles, std::siz
           static_cast<std::uint32_t>(t);
     }
   };
-  parallel_ranges(rows, rows_per_task, threads, progress.part(0.5, 1.0), place);
+  parallel_ranges(rows, rows_per_task, stages[1], place);
   return parts;
 }
 
-void find_owners(const TriangleParts& parts, std::span<const Triangle> triangles,
-                 const Progress& progress, int threads, std::vector<std::uint32_t>* owners) {
+void find_owners(const TriangleParts& parts, std::span<const Triangle> triangles, const Run& run,
+                 std::vector<std::uint32_t>* owners) {
   const auto find = [&](std::int64_t i) {
     const auto part = static_cast<std::uint32_t>(i);
     for (const std::uint32_t t : parts.part(part)) {
@@ -87,7 +88,7 @@ void find_owners(const TriangleParts& parts, std::span<const Triangle> triangles
       }
     }
   };
-  parallel_for(static_cast<std::int64_t>(parts.count()), threads, progress, find);
+  parallel_for(static_cast<std::int64_t>(parts.count()), run, find);
 }
 
 TriangleParts parts_by_inner_vertices(std::span<const Triangle> triangles,

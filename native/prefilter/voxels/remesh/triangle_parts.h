@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -29,12 +29,12 @@ struct TriangleParts {
 /// Divides all triangles by their lowest vertices, in order within a part. In meshes from contours,
 /// nearby vertex indices are near each other. Throws Error(kCancelled).
 TriangleParts parts_along_vertices(std::span<const std::array<std::int32_t, 3>> triangles,
-                                   std::size_t vertex_count, const Progress& progress, int threads);
+                                   std::size_t vertex_count, const Run& run);
 
 /// Sets the owner of each part's vertices: the part with all of their triangles, or
 /// EditedMesh::kShared. Vertices in no part are unchanged. Throws Error(kCancelled).
 void find_owners(const TriangleParts& parts, std::span<const std::array<std::int32_t, 3>> triangles,
-                 const Progress& progress, int threads, std::vector<std::uint32_t>* owners);
+                 const Run& run, std::vector<std::uint32_t>* owners);
 
 /// Divides the chosen triangles into parts that share no inner vertex; each triangle must have at
 /// least one. `parents` is scratch space with one entry per vertex.

@@ -54,8 +54,7 @@ std::uint64_t key_of(const FloatBox& box, float mean) {
 }
 
 // Sorted keys, with the key in the upper half of each number and the triangle in the lower.
-std::vector<std::uint64_t> sorted_keys(const Mesh& mesh, const Frame& frame,
-                                       const Progress& progress, int threads) {
+std::vector<std::uint64_t> sorted_keys(const Mesh& mesh, const Frame& frame, const Run& run) {
   const auto rows = static_cast<std::int64_t>(mesh.triangles.size());
   const auto tasks = static_cast<std::size_t>(range_count(rows, kTrianglesPerTask));
   std::vector<double> sums(tasks);
@@ -66,7 +65,8 @@ std::vector<std::uint64_t> sorted_keys(const Mesh& mesh, const Frame& frame,
     }
     sums[static_cast<std::size_t>(begin / kTrianglesPerTask)] = sum;
   };
-  parallel_ranges(rows, kTrianglesPerTask, threads, progress.part(0.0, 0.12), measure);
+  const Stages stages(run, {12, 13, 75});
+  parallel_ranges(rows, kTrianglesPerTask, stages[0], measure);
   double mean = 0.0;
   for (const double sum : sums) mean += sum;
   mean /= static_cast<double>(rows);
@@ -79,8 +79,8 @@ std::vector<std::uint64_t> sorted_keys(const Mesh& mesh, const Frame& frame,
           key_of(box, static_cast<float>(mean)) << 32U | static_cast<std::uint64_t>(t);
     }
   };
-  parallel_ranges(rows, kTrianglesPerTask, threads, progress.part(0.12, 0.25), place);
-  sort_in_parallel(&keys, progress.part(0.25, 1.0), threads);
+  parallel_ranges(rows, kTrianglesPerTask, stages[1], place);
+  sort_in_parallel(&keys, stages[2]);
   return keys;
 }
 
@@ -104,7 +104,7 @@ void make_leaf(const Mesh& mesh, std::span<const std::uint8_t> is_suspect, const
 
 std::vector<TriangleLeaf> make_leaves(const Mesh& mesh, std::span<const std::uint8_t> is_suspect,
                                       const Frame& frame, std::span<const std::uint64_t> keys,
-                                      const Progress& progress, int threads) {
+                                      const Run& run) {
   constexpr std::size_t kEach = TriangleLeaf::kTriangles;
   std::vector<TriangleLeaf> leaves((keys.size() + kEach - 1) / kEach);
   const auto fill = [&](std::int64_t begin, std::int64_t end) {
@@ -115,13 +115,11 @@ std::vector<TriangleLeaf> make_leaves(const Mesh& mesh, std::span<const std::uin
       make_leaf(mesh, is_suspect, frame, keys.subspan(first, count), &leaves[leaf]);
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(leaves.size()), kTrianglesPerTask / 8, threads,
-                  progress, fill);
+  parallel_ranges(static_cast<std::int64_t>(leaves.size()), kTrianglesPerTask / 8, run, fill);
   return leaves;
 }
 
-std::vector<TriangleLevel> make_levels(std::span<const TriangleLeaf> leaves,
-                                       const Progress& progress, int threads) {
+std::vector<TriangleLevel> make_levels(std::span<const TriangleLeaf> leaves, const Run& run) {
   std::vector<FloatBox> boxes(leaves.size());
   std::vector<std::uint8_t> has_others(leaves.size());
   const auto count = static_cast<std::int64_t>(leaves.size());
@@ -132,7 +130,7 @@ std::vector<TriangleLevel> make_levels(std::span<const TriangleLeaf> leaves,
       has_others[i] = static_cast<unsigned>(std::popcount(leaf.suspects)) < leaf.count ? 1 : 0;
     }
   };
-  parallel_ranges(count, kTrianglesPerTask, threads, progress, make_some);
+  parallel_ranges(count, kTrianglesPerTask, run, make_some);
   std::vector<TriangleLevel> levels;
   while (true) {
     const std::size_t above =
@@ -158,15 +156,15 @@ std::vector<TriangleLevel> make_levels(std::span<const TriangleLeaf> leaves,
 }  // namespace
 
 TriangleTree build_tree(const Mesh& mesh, std::span<const std::uint8_t> is_suspect, const Box& box,
-                        const Progress& progress, int threads) {
+                        const Run& run) {
   double size = 0.0;
   for (int a = 0; a < 3; ++a) size = std::max(size, box.size(a));
   const Frame frame = {box.low, size > 0.0 ? 1.0 / size : 1.0};
-  const std::vector<std::uint64_t> keys =
-      sorted_keys(mesh, frame, progress.part(0.0, 0.64), threads);
+  const Stages stages(run, {16, 4, 5});
+  const std::vector<std::uint64_t> keys = sorted_keys(mesh, frame, stages[0]);
   TriangleTree tree;
-  tree.leaves = make_leaves(mesh, is_suspect, frame, keys, progress.part(0.64, 0.8), threads);
-  tree.levels = make_levels(tree.leaves, progress.part(0.8, 1.0), threads);
+  tree.leaves = make_leaves(mesh, is_suspect, frame, keys, stages[1]);
+  tree.levels = make_levels(tree.leaves, stages[2]);
   return tree;
 }
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/base/vectors.h"
 
 namespace prefilter {
@@ -100,8 +100,7 @@ struct TriangleTree {
 /// Sorts triangles along the Morton curve, with much larger ones in separate leaves. `is_suspect`
 /// is as in intersecting_triangles; `box` is the positions' bounding box. Throws Error(kCancelled).
 TriangleTree build_tree(const MeshView<std::int32_t>& mesh,
-                        std::span<const std::uint8_t> is_suspect, const Box& box,
-                        const Progress& progress, int threads);
+                        std::span<const std::uint8_t> is_suspect, const Box& box, const Run& run);
 
 /// Leaves and their boxes, four at a time.
 struct NearLeaves {

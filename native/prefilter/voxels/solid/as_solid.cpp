@@ -52,8 +52,7 @@ WorkMesh work_mesh(const InputMesh& mesh) {
 }
 
 // Turns closed patches that are inside out, and returns their number.
-std::size_t turn_closed_patches(const Patches& patches, WorkMesh* mesh, const Progress& progress,
-                                int threads) {
+std::size_t turn_closed_patches(const Patches& patches, WorkMesh* mesh, const Run& run) {
   std::vector<ClosedPart> parts;
   std::vector<std::uint32_t> part_of_patch(patches.patches.size());
   std::vector<std::size_t> first(patches.patches.size(), mesh->triangles.size());
@@ -74,7 +73,7 @@ std::size_t turn_closed_patches(const Patches& patches, WorkMesh* mesh, const Pr
     part_of[t] = part_of_patch[patches.patch_of[t]];
   }
   const std::vector<bool> is_turned =
-      parts_to_turn({mesh->positions, mesh->triangles}, parts, part_of, progress, threads);
+      parts_to_turn({mesh->positions, mesh->triangles}, parts, part_of, run);
   for (std::size_t t = 0; t < mesh->triangles.size(); ++t) {
     if (part_of[t] < count && is_turned[part_of[t]]) {
       std::swap(mesh->triangles[t][1], mesh->triangles[t][2]);
@@ -99,38 +98,34 @@ Solid finished(WorkMesh work, const SolidReport& report) {
 
 Solid as_solid(const InputMesh& mesh, const SolidOptions& options) {
   check(mesh, options);
-  const Progress& progress = options.progress;
+  const Run& run = options.run;
   Solid unchanged;
   unchanged.is_unchanged = true;
-  if (is_solid(mesh, options.cell * options.thickness, progress.part(0.0, 0.2), options.threads,
-               &unchanged.report.parts)) {
-    progress.report(1.0);
+  const Stages stages(run, {4, 1, 1, 2, 1, 1, 3, 1, 6});
+  if (is_solid(mesh, options.cell * options.thickness, stages[0], &unchanged.report.parts)) {
+    run.report(1.0);
     return unchanged;
   }
 
   SolidReport report;
   WorkMesh work = work_mesh(mesh);
-  const std::size_t equal = weld_equal(&work, progress.part(0.2, 0.25), options.threads);
-  report.duplicate_faces = drop_duplicates(&work, progress.part(0.25, 0.3), options.threads);
+  const std::size_t equal = weld_equal(&work, stages[1]);
+  report.duplicate_faces = drop_duplicates(&work, stages[2]);
   if (options.weld > 0.0) {
-    report.welded_vertices =
-        weld_borders(&work, options.weld * options.cell, progress.part(0.3, 0.4), options.threads);
-    report.welded_vertices += split_borders(&work, options.weld * options.cell,
-                                            progress.part(0.4, 0.45), options.threads);
-    report.duplicate_faces += drop_duplicates(&work, progress.part(0.45, 0.5), options.threads);
+    report.welded_vertices = weld_borders(&work, options.weld * options.cell, stages[3]);
+    report.welded_vertices += split_borders(&work, options.weld * options.cell, stages[4]);
+    report.duplicate_faces += drop_duplicates(&work, stages[5]);
   }
-  Patches patches = find_patches(work.view(), progress.part(0.5, 0.65), options.threads);
+  Patches patches = find_patches(work.view(), stages[6]);
   report.parts = patches.patches.size();
   report.turned_faces = static_cast<std::size_t>(
       std::count(patches.is_turned.begin(), patches.is_turned.end(), std::uint8_t{1}));
   for (std::size_t t = 0; t < work.triangles.size(); ++t) {
     if (patches.is_turned[t] != 0) std::swap(work.triangles[t][1], work.triangles[t][2]);
   }
-  report.turned_parts =
-      turn_closed_patches(patches, &work, progress.part(0.65, 0.7), options.threads);
-  const bool is_mended =
-      repair_open_parts(patches, options, progress.part(0.7, 1.0), &work, &report);
-  progress.report(1.0);
+  report.turned_parts = turn_closed_patches(patches, &work, stages[7]);
+  const bool is_mended = repair_open_parts(patches, options, stages[8], &work, &report);
+  run.report(1.0);
   const bool is_other = is_mended || report.welded_vertices + report.duplicate_faces +
                                              report.turned_faces + report.turned_parts >
                                          0;

@@ -25,11 +25,10 @@ struct HalfEdge {
 };
 
 // For each vertex, the first one with the same position.
-std::vector<std::uint32_t> weld_equal_positions(const PositionView& positions,
-                                                const Progress& progress, int threads) {
+std::vector<std::uint32_t> weld_equal_positions(const PositionView& positions, const Run& run) {
   std::vector<std::uint32_t> order(positions.size());
   std::iota(order.begin(), order.end(), 0U);
-  sort_in_parallel(&order, progress, threads, [&](std::uint32_t a, std::uint32_t b) {
+  sort_in_parallel(&order, run, [&](std::uint32_t a, std::uint32_t b) {
     return positions[a] != positions[b] ? positions[a] < positions[b] : a < b;
   });
   std::vector<std::uint32_t> welded(positions.size());
@@ -42,8 +41,7 @@ std::vector<std::uint32_t> weld_equal_positions(const PositionView& positions,
 
 // The half-edges that the mesh lacks: for each edge, the difference between its two directions.
 std::vector<HalfEdge> missing_half_edges(const InputMesh& mesh,
-                                         const std::vector<std::uint32_t>& welded,
-                                         const Progress& progress, int threads,
+                                         const std::vector<std::uint32_t>& welded, const Run& run,
                                          std::size_t* open_edges) {
   // Edge and direction in one integer: the direction is in the lowest bit.
   std::vector<std::uint64_t> edges;
@@ -57,7 +55,8 @@ std::vector<HalfEdge> missing_half_edges(const InputMesh& mesh,
                       (from < to ? 0U : 1U));
     }
   }
-  sort_in_parallel(&edges, progress.part(0.0, 0.7), threads);
+  const Stages stages(run, {7, 3});
+  sort_in_parallel(&edges, stages[0]);
   std::vector<HalfEdge> half_edges;
   *open_edges = 0;
   for (std::size_t i = 0; i < edges.size();) {
@@ -72,7 +71,7 @@ std::vector<HalfEdge> missing_half_edges(const InputMesh& mesh,
     for (; excess > 0; --excess) half_edges.push_back({high, low});
     for (; excess < 0; ++excess) half_edges.push_back({low, high});
   }
-  sort_in_parallel(&half_edges, progress.part(0.7, 1.0), threads);
+  sort_in_parallel(&half_edges, stages[1]);
   return half_edges;
 }
 
@@ -87,13 +86,12 @@ std::vector<std::size_t> first_half_edges(std::size_t vertices,
 // The face across each half-edge; kNone where there are several.
 std::vector<std::uint32_t> faces_of(const InputMesh& mesh, const std::vector<std::uint32_t>& welded,
                                     const std::vector<HalfEdge>& half_edges,
-                                    const std::vector<std::size_t>& first,
-                                    const Progress& progress) {
+                                    const std::vector<std::size_t>& first, const Run& run) {
   std::vector<std::uint32_t> faces(half_edges.size(), BorderLoops::kNone);
   std::vector<unsigned char> has_face(half_edges.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (t % kRowsPerReport == 0) {
-      progress.report(static_cast<double>(t) / static_cast<double>(mesh.triangles.size()));
+      run.report(static_cast<double>(t) / static_cast<double>(mesh.triangles.size()));
     }
     const auto& triangle = mesh.triangles[t];
     for (std::size_t i = 0; i < 3; ++i) {
@@ -116,7 +114,7 @@ std::vector<std::uint32_t> faces_of(const InputMesh& mesh, const std::vector<std
 
 // Component of each vertex, named by its lowest vertex: components are connected by triangles.
 std::vector<std::uint32_t> parts_of(const InputMesh& mesh, const std::vector<std::uint32_t>& welded,
-                                    const Progress& progress) {
+                                    const Run& run) {
   std::vector<std::uint32_t> parts = welded;
   const auto part_of = [&](std::uint32_t vertex) {
     while (parts[vertex] != vertex) vertex = parts[vertex] = parts[parts[vertex]];
@@ -124,7 +122,7 @@ std::vector<std::uint32_t> parts_of(const InputMesh& mesh, const std::vector<std
   };
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (t % kRowsPerReport == 0) {
-      progress.report(static_cast<double>(t) / static_cast<double>(mesh.triangles.size()));
+      run.report(static_cast<double>(t) / static_cast<double>(mesh.triangles.size()));
     }
     const auto& triangle = mesh.triangles[t];
     const std::uint32_t a = part_of(static_cast<std::uint32_t>(triangle[0]));
@@ -140,13 +138,12 @@ std::vector<std::uint32_t> parts_of(const InputMesh& mesh, const std::vector<std
 // Walks along each half-edge once. Every vertex has as many incoming as outgoing ones, so a walk
 // ends where it began; when it reaches a vertex again, it has closed a loop.
 void walk_along(const std::vector<HalfEdge>& half_edges, const std::vector<std::uint32_t>& faces,
-                std::vector<std::size_t> next, const Progress& progress, BorderLoops* loops) {
+                std::vector<std::size_t> next, const Run& run, BorderLoops* loops) {
   std::vector<std::size_t> indices(next.size(), kNowhere);  // index in the walk
   std::vector<std::uint32_t> walk;
   std::vector<std::uint32_t> beside;
   for (std::size_t i = 0; i < half_edges.size(); ++i) {
-    if (i % 4096 == 0)
-      progress.report(static_cast<double>(i) / static_cast<double>(half_edges.size()));
+    if (i % 4096 == 0) run.report(static_cast<double>(i) / static_cast<double>(half_edges.size()));
     if (next[half_edges[i].from] == kNowhere) continue;
     walk.push_back(half_edges[i].from);
     indices[half_edges[i].from] = 0;
@@ -179,20 +176,19 @@ void walk_along(const std::vector<HalfEdge>& half_edges, const std::vector<std::
 
 }  // namespace
 
-BorderLoops border_loops(const InputMesh& mesh, const Progress& progress, int threads) {
+BorderLoops border_loops(const InputMesh& mesh, const Run& run) {
   BorderLoops loops;
-  const std::vector<std::uint32_t> welded =
-      weld_equal_positions(mesh.positions, progress.part(0.0, 0.4), threads);
+  const Stages stages(run, {4, 3, 1, 1, 1});
+  const std::vector<std::uint32_t> welded = weld_equal_positions(mesh.positions, stages[0]);
   const std::vector<HalfEdge> half_edges =
-      missing_half_edges(mesh, welded, progress.part(0.4, 0.7), threads, &loops.open_edges);
+      missing_half_edges(mesh, welded, stages[1], &loops.open_edges);
   if (!half_edges.empty()) {
     std::vector<std::size_t> first = first_half_edges(mesh.positions.size(), half_edges);
-    const std::vector<std::uint32_t> faces =
-        faces_of(mesh, welded, half_edges, first, progress.part(0.7, 0.8));
-    loops.parts = parts_of(mesh, welded, progress.part(0.8, 0.9));
-    walk_along(half_edges, faces, std::move(first), progress.part(0.9, 1.0), &loops);
+    const std::vector<std::uint32_t> faces = faces_of(mesh, welded, half_edges, first, stages[2]);
+    loops.parts = parts_of(mesh, welded, stages[3]);
+    walk_along(half_edges, faces, std::move(first), stages[4], &loops);
   }
-  progress.report(1.0);
+  run.report(1.0);
   return loops;
 }
 

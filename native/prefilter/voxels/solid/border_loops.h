@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -36,6 +36,6 @@ struct BorderLoops {
 
 /// Finds the loops of a mesh that passed check_mesh. `parts` is empty if there are no loops. The
 /// result does not depend on the number of threads. Throws Error(kCancelled).
-BorderLoops border_loops(const InputMesh& mesh, const Progress& progress, int threads);
+BorderLoops border_loops(const InputMesh& mesh, const Run& run);
 
 }  // namespace prefilter

@@ -59,22 +59,23 @@ struct Windings {
 };
 
 Windings windings_at(std::span<const Vector3> points, const InputMesh& mesh, const Caps& caps,
-                     const UnitFrame& frame, const Progress& progress, int threads) {
+                     const UnitFrame& frame, const Run& run) {
   Windings windings;
   std::vector<Vector3> positions = framed(mesh.positions, frame);
-  const WindingNumbers of_mesh({positions, mesh.triangles}, progress.part(0.0, 0.4), threads);
-  windings.of_mesh = of_mesh.find(points, progress.part(0.4, 0.6), threads);
+  const Stages stages(run, {2, 1, 1, 1});
+  const WindingNumbers of_mesh({positions, mesh.triangles}, stages[0]);
+  windings.of_mesh = of_mesh.find(points, stages[1]);
   for (const Vector3& p : caps.positions) positions.push_back(frame.to(p));
-  const WindingNumbers of_caps({positions, caps.triangles}, progress.part(0.6, 0.8), threads);
-  windings.of_caps = of_caps.find(points, progress.part(0.8, 1.0), threads);
+  const WindingNumbers of_caps({positions, caps.triangles}, stages[2]);
+  windings.of_caps = of_caps.find(points, stages[3]);
   return windings;
 }
 
 }  // namespace
 
 void drop_canceling_caps(const InputMesh& mesh, const BorderLoops& loops,
-                         std::span<const LoopCap> caps, const CappedSolids& solids,
-                         const Progress& progress, int threads, std::span<unsigned char> is_kept) {
+                         std::span<const LoopCap> caps, const CappedSolids& solids, const Run& run,
+                         std::span<unsigned char> is_kept) {
   // The caps of a single, outward part cannot cancel anything.
   if (solids.loops.empty() || !solids.has_others) return;
   Caps kept;
@@ -93,7 +94,7 @@ void drop_canceling_caps(const InputMesh& mesh, const BorderLoops& loops,
     }
     ends.push_back(points.size());
   }
-  const Windings windings = windings_at(points, mesh, kept, frame, progress, threads);
+  const Windings windings = windings_at(points, mesh, kept, frame, run);
   const double sign = solids.is_turned ? -1.0 : 1.0;
   for (std::size_t k = 0, begin = 0; k < ends.size(); begin = ends[k++]) {
     double change = 0.0;

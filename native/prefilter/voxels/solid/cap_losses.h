@@ -6,7 +6,7 @@
 #include <span>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/solid/border_loops.h"
 #include "prefilter/voxels/solid/loop_caps.h"
 #include "prefilter/voxels/solid/sheets.h"
@@ -17,7 +17,7 @@ namespace prefilter {
 /// parts close them already, so that the region behind the cap is inside without it, or because the
 /// cap is inside out. `is_kept` has one entry per loop.
 void drop_canceling_caps(const InputMesh& mesh, const BorderLoops& loops,
-                         std::span<const LoopCap> caps, const CappedSolids& solids,
-                         const Progress& progress, int threads, std::span<unsigned char> is_kept);
+                         std::span<const LoopCap> caps, const CappedSolids& solids, const Run& run,
+                         std::span<unsigned char> is_kept);
 
 }  // namespace prefilter

@@ -12,24 +12,23 @@ namespace prefilter {
 
 Caps close_holes(const InputMesh& mesh, const CloseHolesOptions& options) {
   check_mesh(mesh, kLargestCoordinate);
-  const auto part = [&](double from, double to) { return options.progress.part(from, to); };
+  const auto part = [&](double from, double to) { return options.run.part(from, to); };
   Caps result;
-  if (is_balanced(mesh, part(0.0, 0.05), options.threads)) return result;
-  const BorderLoops loops = border_loops(mesh, part(0.0, 0.4), options.threads);
+  if (is_balanced(mesh, part(0.0, 0.05))) return result;
+  const BorderLoops loops = border_loops(mesh, part(0.0, 0.4));
   result.open_edges = loops.open_edges;
   result.holes = loops.size();
   std::vector<unsigned char> is_kept(loops.size(), 1);
   if (options.leaves_losses) drop_single_face_loops(loops, is_kept);
-  std::vector<LoopCap> caps =
-      first_caps(mesh, loops, is_kept, options.method, part(0.4, 0.5), options.threads);
+  std::vector<LoopCap> caps = first_caps(mesh, loops, is_kept, options.method, part(0.4, 0.5));
   CappedSolids solids;
   if (options.leaves_losses) {
     solids = drop_sheet_loops(mesh, loops, caps, part(0.5, 0.55), is_kept);
   }
   if (options.method == HoleMethod::kSmooth) {
-    smooth_caps(mesh, loops, is_kept, part(0.55, 0.9), options.threads, &caps);
+    smooth_caps(mesh, loops, is_kept, part(0.55, 0.9), &caps);
   }
-  drop_canceling_caps(mesh, loops, caps, solids, part(0.9, 0.99), options.threads, is_kept);
+  drop_canceling_caps(mesh, loops, caps, solids, part(0.9, 0.99), is_kept);
   for (std::size_t i = 0; i < loops.size(); ++i) {
     if (is_kept[i] != 0) {
       append_cap(mesh.positions.size(), loops.loop(i), caps[i], &result);
@@ -37,7 +36,7 @@ Caps close_holes(const InputMesh& mesh, const CloseHolesOptions& options) {
       ++result.left_open;
     }
   }
-  options.progress.report(1.0);
+  options.run.report(1.0);
   return result;
 }
 

@@ -21,9 +21,9 @@ namespace {
 constexpr std::int64_t kRowsPerTask = 1 << 14;
 
 // Component of each vertex, named by its lowest vertex: components are connected by triangles.
-std::vector<std::uint32_t> first_vertices(const InputMesh& mesh, const Progress& progress) {
+std::vector<std::uint32_t> first_vertices(const InputMesh& mesh, const Run& run) {
   DisjointSets<std::uint32_t> parts(mesh.positions.size());
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     cancel_check.step();
     const auto [a, b, c] = mesh.triangles[t];
@@ -64,10 +64,10 @@ bool has_thin_part(const std::vector<ClosedPart>& parts, double thickness) {
 
 }  // namespace
 
-bool is_balanced(const InputMesh& mesh, const Progress& progress, int threads) {
+bool is_balanced(const InputMesh& mesh, const Run& run) {
   const auto rows = static_cast<std::int64_t>(mesh.triangles.size());
   std::vector<EdgeHash> sums(static_cast<std::size_t>(range_count(rows, kRowsPerTask)));
-  parallel_ranges(rows, kRowsPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
+  parallel_ranges(rows, kRowsPerTask, run, [&](std::int64_t begin, std::int64_t end) {
     EdgeHash sum;
     for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
       const auto [a, b, c] = mesh.triangles[t];
@@ -80,18 +80,18 @@ bool is_balanced(const InputMesh& mesh, const Progress& progress, int threads) {
   return all.is_zero();
 }
 
-bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress, int threads,
-              std::size_t* part_count) {
+bool is_solid(const InputMesh& mesh, double thickness, const Run& run, std::size_t* part_count) {
   *part_count = 0;
-  if (!is_balanced(mesh, progress.part(0.0, 0.3), threads)) return false;
-  const Progress counting = progress.part(0.3, 0.6);
+  const Stages stages(run, {3, 3, 2, 2});
+  if (!is_balanced(mesh, stages[0])) return false;
+  const Run counting = stages[1];
   const std::vector<std::uint32_t> part_of = first_vertices(mesh, counting);
   std::vector<ClosedPart> parts;
   // part of each component, at its lowest vertex
   std::vector<std::uint32_t> numbers(mesh.positions.size(), 0);
   std::vector<bool> is_seen(mesh.positions.size(), false);
   std::vector<std::uint32_t> number_of(mesh.triangles.size());
-  const Progress summing = progress.part(0.6, 0.8);
+  const Run summing = stages[2];
   CancelCheck cancel_check(summing);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     cancel_check.step();
@@ -125,8 +125,7 @@ bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress,
     if (part.vertices * 3 < part.triangles) return false;
   }
   if (has_thin_part(parts, thickness) || has_copies(parts)) return false;
-  const std::vector<bool> is_turned =
-      parts_to_turn(mesh, parts, number_of, progress.part(0.8, 1.0), threads);
+  const std::vector<bool> is_turned = parts_to_turn(mesh, parts, number_of, stages[3]);
   return std::find(is_turned.begin(), is_turned.end(), true) == is_turned.end();
 }
 

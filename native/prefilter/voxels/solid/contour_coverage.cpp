@@ -38,10 +38,10 @@ bool is_inside_all_along(const Octree& octree, const Vector3& point, const Vecto
 // Calls set(triangle, share) with the share of each triangle's samples for which holds(triangle,
 // point, normal) is true; the normal is one cell long.
 template <class Holds, class Set>
-void for_shares(const MeshView<std::int32_t>& mesh, double cell, const Progress& progress,
-                int threads, const Holds& holds, const Set& set) {
-  parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kCoverageRowsPerTask, threads,
-                  progress, [&](std::int64_t begin, std::int64_t end) {
+void for_shares(const MeshView<std::int32_t>& mesh, double cell, const Run& run, const Holds& holds,
+                const Set& set) {
+  parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kCoverageRowsPerTask, run,
+                  [&](std::int64_t begin, std::int64_t end) {
                     for (auto t = static_cast<std::size_t>(begin);
                          t < static_cast<std::size_t>(end); ++t) {
                       const std::array<Vector3, 3> corners = mesh.corners(t);
@@ -82,10 +82,10 @@ Octree empty_tree_around(const Box& box, double cell) {
 }
 
 std::vector<float> contour_coverage(const MeshView<std::int32_t>& mesh, const Octree& octree,
-                                    const Progress& progress, int threads) {
+                                    const Run& run) {
   std::vector<float> shares(mesh.triangles.size(), 0.0F);
   for_shares(
-      mesh, octree.cell_size(0, octree.depth), progress, threads,
+      mesh, octree.cell_size(0, octree.depth), run,
       [&](std::size_t, const Vector3& point, const Vector3& normal) {
         return has_both_sides(octree, point, normal);
       },
@@ -94,10 +94,9 @@ std::vector<float> contour_coverage(const MeshView<std::int32_t>& mesh, const Oc
 }
 
 void add_covered(const MeshView<std::int32_t>& mesh, const Octree& octree, const Octree& others,
-                 const std::vector<bool>& may_be_covered, const Progress& progress, int threads,
-                 std::span<float> shares) {
+                 const std::vector<bool>& may_be_covered, const Run& run, std::span<float> shares) {
   for_shares(
-      mesh, octree.cell_size(0, octree.depth), progress, threads,
+      mesh, octree.cell_size(0, octree.depth), run,
       [&](std::size_t t, const Vector3& point, const Vector3& normal) {
         return may_be_covered[t] && is_inside_all_along(others, point, normal) &&
                is_inside_all_along(octree, point, normal);

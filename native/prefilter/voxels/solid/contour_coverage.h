@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/octree.h"
 
 namespace prefilter {
@@ -20,14 +20,13 @@ Octree empty_tree_around(const Box& box, double cell);
 /// For each triangle, the share of its samples with leaves on both sides of 1/2 within 1.5 cells
 /// along the normal, where the contour passes.
 std::vector<float> contour_coverage(const MeshView<std::int32_t>& mesh, const Octree& octree,
-                                    const Progress& progress, int threads);
+                                    const Run& run);
 
 /// Adds the shares of samples that are inside both `others` and the whole octree over the same
 /// distance along the normal: other parts cover these, so they are not lost. Only for triangles
 /// that `may_be_covered`.
 void add_covered(const MeshView<std::int32_t>& mesh, const Octree& octree, const Octree& others,
-                 const std::vector<bool>& may_be_covered, const Progress& progress, int threads,
-                 std::span<float> shares);
+                 const std::vector<bool>& may_be_covered, const Run& run, std::span<float> shares);
 
 /// Calls visit(point) for points on a triangle about `distance` apart: its center, or the centers
 /// of the triangles into which it is divided.

@@ -23,7 +23,7 @@ struct EdgeUse {
 class EdgeTable {
  public:
   template <typename Mesh>
-  EdgeTable(const Mesh& mesh, const Progress& progress, int threads)
+  EdgeTable(const Mesh& mesh, const Run& run)
       : uses_(
             mesh.positions.size(), mesh.triangles.size(),
             [&](std::size_t begin, std::size_t end, const auto& put) {
@@ -36,7 +36,7 @@ class EdgeTable {
                 }
               }
             },
-            progress, threads) {}
+            run) {}
 
   std::size_t vertex_count() const { return uses_.size(); }
 

@@ -48,7 +48,7 @@ Vector3 unit(const Vector3& v) {
 // The patch, refined to the size of the border's edges, plus `growth` per distance from it; none if
 // it has too many points.
 std::optional<HolePatch> refined_patch(const HolePatch& whole, std::size_t border, double growth,
-                                       const Progress& progress) {
+                                       const Run& run) {
   HolePatch patch = whole;
   std::vector<double> sizes(border);
   for (std::size_t i = 0; i < border; ++i) {
@@ -58,7 +58,7 @@ std::optional<HolePatch> refined_patch(const HolePatch& whole, std::size_t borde
                2.0;
   }
   for (;;) {
-    progress.report(0.0);
+    run.report(0.0);
     const auto count = static_cast<std::uint32_t>(patch.triangles().size());
     std::vector<std::uint32_t> changed;
     for (std::uint32_t t = 0; t < count; ++t) {
@@ -88,8 +88,8 @@ std::optional<HolePatch> refined_patch(const HolePatch& whole, std::size_t borde
         return {};
     }
     if (changed.empty()) return patch;
-    patch.flip(changed, true, progress.part(0.0, 0.0));
-    patch.flip_all(true, progress.part(0.0, 0.0));
+    patch.flip(changed, true, run.part(0.0, 0.0));
+    patch.flip_all(true, run.part(0.0, 0.0));
   }
 }
 
@@ -233,7 +233,7 @@ class Metric {
 };
 
 // Moves interior points to minimize the area, with fixed cotangent weights.
-bool minimize_area(HolePatch* patch, std::size_t border, const Progress& progress) {
+bool minimize_area(HolePatch* patch, std::size_t border, const Run& run) {
   const std::vector<Vector3> none(border);
   std::vector<Vector3> x(patch->points().begin(), patch->points().end());
   const std::vector<Metric::Row> rows = Metric(*patch, none).rows(x);
@@ -249,7 +249,7 @@ bool minimize_area(HolePatch* patch, std::size_t border, const Progress& progres
       }
     }
   }
-  const SparseFactors factors(std::move(entries), std::span(x).subspan(border), progress);
+  const SparseFactors factors(std::move(entries), std::span(x).subspan(border), run);
   if (!factors.is_definite()) return false;
   factors.solve(right);
   std::copy(right.begin(), right.end(), x.begin() + static_cast<std::ptrdiff_t>(border));
@@ -263,7 +263,7 @@ struct Plate {
   std::vector<Vector3> right;  // for the interior points
 };
 
-Plate plate_of(const Metric& metric, std::span<const Vector3> x, const Progress& progress) {
+Plate plate_of(const Metric& metric, std::span<const Vector3> x, const Run& run) {
   const std::size_t border = metric.border();
   const std::vector<Metric::Row> rows = metric.rows(x);
   const std::vector<double> areas = metric.curvature(x).areas;
@@ -286,7 +286,7 @@ Plate plate_of(const Metric& metric, std::span<const Vector3> x, const Progress&
       }
     }
   }
-  return {SparseFactors(std::move(entries), x.subspan(border), progress), std::move(right)};
+  return {SparseFactors(std::move(entries), x.subspan(border), run), std::move(right)};
 }
 
 // Weighted sums over nearby border edges with similar normals.
@@ -357,14 +357,13 @@ bool stays_near(std::span<const Vector3> x, std::size_t border) {
 }
 
 // Moves interior points to minimize the bending energy; returns false on failure.
-bool minimize_bending(std::span<const Vector3> clamped, HolePatch* patch,
-                      const Progress& progress) {
+bool minimize_bending(std::span<const Vector3> clamped, HolePatch* patch, const Run& run) {
   const std::size_t border = clamped.size();
   const auto within = static_cast<std::ptrdiff_t>(border);
   {
     const Metric metric(*patch, clamped);
     std::vector<Vector3> x(patch->points().begin(), patch->points().end());
-    Plate plate = plate_of(metric, x, progress.part(0.0, 0.3));
+    Plate plate = plate_of(metric, x, run.part(0.0, 0.3));
     if (!plate.factors.is_definite()) return false;
     plate.factors.solve(plate.right);
     std::copy(plate.right.begin(), plate.right.end(), x.begin() + within);
@@ -373,10 +372,10 @@ bool minimize_bending(std::span<const Vector3> clamped, HolePatch* patch,
   }
   std::optional<Plate> plate;
   for (int step = 0; step < kMaxDescentSteps; ++step) {
-    progress.report(0.3 + 0.7 * step / kMaxDescentSteps);
+    run.report(0.3 + 0.7 * step / kMaxDescentSteps);
     if (step % kStepsPerMetric == 0) {
-      patch->flip_all(true, progress.part(0.3, 0.3));
-      plate = plate_of(Metric(*patch, clamped), patch->points(), progress.part(0.3, 0.3));
+      patch->flip_all(true, run.part(0.3, 0.3));
+      plate = plate_of(Metric(*patch, clamped), patch->points(), run.part(0.3, 0.3));
       if (!plate->factors.is_definite()) return true;
     }
     const Metric metric(*patch, clamped);
@@ -406,30 +405,30 @@ bool minimize_bending(std::span<const Vector3> clamped, HolePatch* patch,
 
 }  // namespace
 
-void refine_patch(HolePatch* patch, const Progress& progress) {
+void refine_patch(HolePatch* patch, const Run& run) {
   const std::size_t border = patch->points().size();
   for (const double growth : kSizeGrowths) {
-    if (std::optional<HolePatch> refined = refined_patch(*patch, border, growth, progress)) {
+    if (std::optional<HolePatch> refined = refined_patch(*patch, border, growth, run)) {
       *patch = std::move(*refined);
       break;
     }
   }
-  progress.report(1.0);
+  run.report(1.0);
 }
 
-void fair_patch(std::span<const Vector3> normals, HolePatch* patch, const Progress& progress) {
+void fair_patch(std::span<const Vector3> normals, HolePatch* patch, const Run& run) {
   const std::size_t border = normals.size();
   if (patch->points().size() == border) return;
   for (int step = 0; step < kFilmSteps; ++step) {
-    if (!minimize_area(patch, border, progress.part(0.0, 0.2))) return;
-    patch->flip_all(true, progress.part(0.2, 0.2));
+    if (!minimize_area(patch, border, run.part(0.0, 0.2))) return;
+    patch->flip_all(true, run.part(0.2, 0.2));
   }
   const std::vector<Vector3> clamped = continuation_directions(normals, *patch);
   const bool is_clamped =
       std::any_of(clamped.begin(), clamped.end(), [](const Vector3& v) { return dot(v, v) > 0.0; });
   if (!is_clamped) return;
   const HolePatch film = *patch;
-  if (!minimize_bending(clamped, patch, progress.part(0.2, 1.0))) *patch = film;
+  if (!minimize_bending(clamped, patch, run.part(0.2, 1.0))) *patch = film;
 }
 
 }  // namespace prefilter

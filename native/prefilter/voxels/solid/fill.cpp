@@ -65,10 +65,10 @@ void add_piece(const std::array<int, 3>& cell, const CellPolygon& piece, double 
 // Planes, per cell, of the triangles with a filled region on exactly one side.
 using CellPlanes = std::unordered_map<std::size_t, CellPlane>;
 CellPlanes planes_of(const MeshView<std::int32_t>& mesh, const ReachGrid& grid,
-                     const std::vector<bool>& is_filled, const Progress& progress) {
+                     const std::vector<bool>& is_filled, const Run& run) {
   CellPlanes planes;
   const CellBox all = {{0, 0, 0}, grid.size()};
-  CancelCheck cancel_check(progress);
+  CancelCheck cancel_check(run);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     cancel_check.step();
     const std::array<Vector3, 3> corners = mesh.corners(t);
@@ -138,15 +138,13 @@ std::vector<float> filled_cells(const ReachGrid& grid, const std::vector<bool>& 
 }  // namespace
 
 TriangleMesh filled_regions(const MeshView<std::int32_t>& mesh, const ReachGrid& grid,
-                            const std::vector<bool>& is_filled, const Progress& progress,
-                            int threads) {
+                            const std::vector<bool>& is_filled, const Run& run) {
   const std::vector<float> values =
-      filled_cells(grid, is_filled, planes_of(mesh, grid, is_filled, progress.part(0.0, 0.5)));
+      filled_cells(grid, is_filled, planes_of(mesh, grid, is_filled, run.part(0.0, 0.5)));
   ContourOptions options;
   options.interpolant = Interpolant::kPlane;
   options.clean_up = false;
-  options.threads = threads;
-  options.progress = progress.part(0.6, 1.0);
+  options.run = run.part(0.6, 1.0);
   const double cell = grid.cell();
   return contour_grid({values.data(), grid.size()}, {grid.origin(), {cell, cell, cell}}, options);
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/solid/reach.h"
 
 namespace prefilter {
@@ -15,7 +15,6 @@ namespace prefilter {
 /// Closed surface of some regions of a grid. In cells with triangles that have such a region on one
 /// side only, it follows their mean plane. `is_filled` has one entry per label.
 TriangleMesh filled_regions(const MeshView<std::int32_t>& mesh, const ReachGrid& grid,
-                            const std::vector<bool>& is_filled, const Progress& progress,
-                            int threads);
+                            const std::vector<bool>& is_filled, const Run& run);
 
 }  // namespace prefilter

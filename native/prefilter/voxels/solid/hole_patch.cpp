@@ -221,14 +221,14 @@ void HolePatch::flip_edge(std::uint32_t triangle, int edge) {
   link(other, 1, first_triangle.beyond[j], triangle);
 }
 
-void HolePatch::flip(std::span<const std::uint32_t> first, bool bends, const Progress& progress) {
+void HolePatch::flip(std::span<const std::uint32_t> first, bool bends, const Run& run) {
   std::vector<std::uint32_t> waiting(first.rbegin(), first.rend());
   std::size_t left = kMaxFlipsPerTriangle * triangles_.size();
   std::size_t visited = 0;
   while (!waiting.empty() && left > 0) {
     const std::uint32_t triangle = waiting.back();
     waiting.pop_back();
-    if (++visited % kFlipsPerReport == 0) progress.report(0.5);
+    if (++visited % kFlipsPerReport == 0) run.report(0.5);
     for (int edge = 0; edge < 3; ++edge) {
       if (!is_better_flipped(triangle, edge, bends)) continue;
       const std::uint32_t other = triangles_[triangle].beyond[static_cast<std::size_t>(edge)];
@@ -239,13 +239,13 @@ void HolePatch::flip(std::span<const std::uint32_t> first, bool bends, const Pro
       break;
     }
   }
-  progress.report(1.0);
+  run.report(1.0);
 }
 
-void HolePatch::flip_all(bool bends, const Progress& progress) {
+void HolePatch::flip_all(bool bends, const Run& run) {
   std::vector<std::uint32_t> all(triangles_.size());
   std::iota(all.begin(), all.end(), 0U);
-  flip(all, bends, progress);
+  flip(all, bends, run);
 }
 
 }  // namespace prefilter

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -48,8 +48,8 @@ class HolePatch {
   /// the surface around, count as larger. With `bends`, only angles count, and edges where the
   /// patch bends by more than 60 degrees are only flipped to remove folds. Starts with the edges of
   /// the given triangles, or with all.
-  void flip(std::span<const std::uint32_t> first, bool bends, const Progress& progress);
-  void flip_all(bool bends, const Progress& progress);
+  void flip(std::span<const std::uint32_t> first, bool bends, const Run& run);
+  void flip_all(bool bends, const Run& run);
 
  private:
   void link(std::uint32_t triangle, int edge, std::uint32_t other, std::uint32_t was);

@@ -21,14 +21,15 @@ constexpr std::int64_t kLoopsPerTask = 16;
 
 // A smooth patch over a loop. Long loops are simplified first, and the other points inserted later.
 HolePatch smooth_patch(const std::vector<Vector3>& loop, std::span<const Vector3> normals,
-                       const Progress& progress) {
+                       const Run& run) {
   const std::vector<std::uint32_t> kept = simplify_loop(loop, kMaxFairedPoints);
   std::vector<Vector3> points;
   for (const std::uint32_t i : kept) points.push_back(loop[i]);
   const std::vector<Vector3> beside = mean_normals(normals, kept);
-  HolePatch patch = span_loop(points, beside, progress.part(0.0, 0.1));
-  refine_patch(&patch, progress.part(0.1, 0.2));
-  fair_patch(beside, &patch, progress.part(0.2, 0.9));
+  const Stages stages(run, {1, 1, 7, 1});
+  HolePatch patch = span_loop(points, beside, stages[0]);
+  refine_patch(&patch, stages[1]);
+  fair_patch(beside, &patch, stages[2]);
   if (kept.size() == loop.size()) return patch;
   const auto within = patch.points().subspan(kept.size());
   const auto added = static_cast<std::uint32_t>(loop.size() - kept.size());
@@ -42,7 +43,7 @@ HolePatch smooth_patch(const std::vector<Vector3>& loop, std::span<const Vector3
   points = loop;
   points.insert(points.end(), within.begin(), within.end());
   HolePatch whole(std::move(points), triangles, {normals.begin(), normals.end()});
-  insert_points(loop, true, &whole, progress.part(0.9, 1.0));
+  insert_points(loop, true, &whole, stages[3]);
   return whole;
 }
 
@@ -98,21 +99,21 @@ LoopCap patch_over(const InputMesh& mesh, const BorderLoops& loops, std::size_t 
 // sequence.
 template <typename Close>
 void for_capped_loops(const BorderLoops& loops, std::span<const unsigned char> is_kept,
-                      const Progress& progress, int threads, const Close& close) {
-  parallel_ranges(static_cast<std::int64_t>(loops.size()), kLoopsPerTask, threads,
-                  progress.part(0.0, 0.5), [&](std::int64_t begin, std::int64_t end) {
+                      const Run& run, const Close& close) {
+  parallel_ranges(static_cast<std::int64_t>(loops.size()), kLoopsPerTask, run.part(0.0, 0.5),
+                  [&](std::int64_t begin, std::int64_t end) {
                     for (std::int64_t i = begin; i < end; ++i) {
                       const auto loop = static_cast<std::size_t>(i);
                       if (is_kept[loop] == 0 || loops.loop(loop).size() > kMaxShortLoopEdges)
                         continue;
-                      close(loop, Progress());
+                      close(loop, Run());
                     }
                   });
   const double all = static_cast<double>(loops.vertices.size());
   for (std::size_t i = 0; i < loops.size(); ++i) {
     if (is_kept[i] == 0 || loops.loop(i).size() <= kMaxShortLoopEdges) continue;
-    close(i, progress.part(0.5 + 0.5 * static_cast<double>(loops.begins[i]) / all,
-                           0.5 + 0.5 * static_cast<double>(loops.begins[i + 1]) / all));
+    close(i, run.part(0.5 + 0.5 * static_cast<double>(loops.begins[i]) / all,
+                      0.5 + 0.5 * static_cast<double>(loops.begins[i + 1]) / all));
   }
 }
 
@@ -156,9 +157,9 @@ LoopCap fan_over(const PositionView& positions, std::span<const std::uint32_t> l
 
 std::vector<LoopCap> first_caps(const InputMesh& mesh, const BorderLoops& loops,
                                 std::span<const unsigned char> is_kept, HoleMethod method,
-                                const Progress& progress, int threads) {
+                                const Run& run) {
   std::vector<LoopCap> caps(loops.size());
-  for_capped_loops(loops, is_kept, progress, threads, [&](std::size_t i, const Progress& own) {
+  for_capped_loops(loops, is_kept, run, [&](std::size_t i, const Run& own) {
     const UnitFrame frame = frame_of_loop(mesh, loops.loop(i));
     if (is_fanned(loops, method, i) || !frame.has_size()) {
       caps[i] = fan_over(mesh.positions, loops.loop(i));
@@ -172,9 +173,9 @@ std::vector<LoopCap> first_caps(const InputMesh& mesh, const BorderLoops& loops,
 }
 
 void smooth_caps(const InputMesh& mesh, const BorderLoops& loops,
-                 std::span<const unsigned char> is_kept, const Progress& progress, int threads,
+                 std::span<const unsigned char> is_kept, const Run& run,
                  std::vector<LoopCap>* caps) {
-  for_capped_loops(loops, is_kept, progress, threads, [&](std::size_t i, const Progress& own) {
+  for_capped_loops(loops, is_kept, run, [&](std::size_t i, const Run& own) {
     const UnitFrame frame = frame_of_loop(mesh, loops.loop(i));
     if (is_fanned(loops, HoleMethod::kSmooth, i) || !frame.has_size()) return;
     (*caps)[i] = patch_over(mesh, loops, i, frame, [&](const auto& points, const auto& normals) {

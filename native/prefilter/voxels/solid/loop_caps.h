@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/close_holes.h"
 #include "prefilter/voxels/solid/border_loops.h"
 
@@ -34,11 +34,11 @@ LoopCap fan_over(const PositionView& positions, std::span<const std::uint32_t> l
 /// otherwise with patches of about the smallest area. `is_kept` has one entry per loop.
 std::vector<LoopCap> first_caps(const InputMesh& mesh, const BorderLoops& loops,
                                 std::span<const unsigned char> is_kept, HoleMethod method,
-                                const Progress& progress, int threads);
+                                const Run& run);
 
 /// Replaces these patches by ones that continue the surface.
 void smooth_caps(const InputMesh& mesh, const BorderLoops& loops,
-                 std::span<const unsigned char> is_kept, const Progress& progress, int threads,
+                 std::span<const unsigned char> is_kept, const Run& run,
                  std::vector<LoopCap>* caps);
 
 /// Appends a cap for a mesh of `vertex_count` vertices.

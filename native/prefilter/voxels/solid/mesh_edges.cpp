@@ -26,33 +26,32 @@ std::size_t corner_of(const TriangleView& triangles, const EdgeUse& use, std::si
 }
 
 // For each vertex the number of its first edge to a higher vertex; the last entry is the total.
-std::vector<std::int32_t> first_edges(const EdgeTable& table, const Progress& progress,
-                                      int threads) {
+std::vector<std::int32_t> first_edges(const EdgeTable& table, const Run& run) {
   const auto count = static_cast<std::int64_t>(table.vertex_count());
   std::vector<std::int32_t> first(table.vertex_count() + 1);
-  parallel_ranges(
-      count, kVerticesPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
-        for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
-          std::int32_t edges = 0;
-          table.for_edges_from(v, [&](std::size_t, const auto&) { ++edges; });
-          first[v + 1] = edges;
-        }
-      });
+  parallel_ranges(count, kVerticesPerTask, run, [&](std::int64_t begin, std::int64_t end) {
+    for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
+      std::int32_t edges = 0;
+      table.for_edges_from(v, [&](std::size_t, const auto&) { ++edges; });
+      first[v + 1] = edges;
+    }
+  });
   for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
   return first;
 }
 
 }  // namespace
 
-MeshEdges find_mesh_edges(const InputMesh& mesh, const Progress& progress, int threads) {
+MeshEdges find_mesh_edges(const InputMesh& mesh, const Run& run) {
   check_mesh(mesh, kLargestCoordinate);
   const std::size_t corners = 3 * mesh.triangles.size();
   if (corners > std::numeric_limits<std::int32_t>::max()) {
     throw_invalid("triangles: found " + std::to_string(mesh.triangles.size()) +
                   "; at most 715827882 have edges with numbers of 32 bits");
   }
-  const EdgeTable table(mesh, progress.part(0.0, 0.6), threads);
-  const std::vector<std::int32_t> first = first_edges(table, progress.part(0.6, 0.7), threads);
+  const Stages stages(run, {6, 1, 3});
+  const EdgeTable table(mesh, stages[0]);
+  const std::vector<std::int32_t> first = first_edges(table, stages[1]);
   MeshEdges edges;
   edges.vertices.resize(static_cast<std::size_t>(first.back()));
   edges.of_corners.assign(corners, -1);
@@ -69,8 +68,8 @@ MeshEdges find_mesh_edges(const InputMesh& mesh, const Progress& progress, int t
       });
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(table.vertex_count()), kVerticesPerTask, threads,
-                  progress.part(0.7, 1.0), number);
+  parallel_ranges(static_cast<std::int64_t>(table.vertex_count()), kVerticesPerTask, stages[2],
+                  number);
   return edges;
 }
 

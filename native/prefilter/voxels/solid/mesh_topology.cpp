@@ -52,15 +52,14 @@ struct TrianglesAt {
   std::vector<std::uint32_t> starts;
   std::vector<std::uint32_t> triangles;
 
-  TrianglesAt(const NamedTriangles& mesh, std::size_t vertices, const Progress& progress,
-              int threads)
+  TrianglesAt(const NamedTriangles& mesh, std::size_t vertices, const Run& run)
       : starts(vertices + 1, 0) {
     const auto next = [&](std::uint32_t vertex) {
       return std::atomic_ref(starts[vertex]).fetch_add(1, std::memory_order_relaxed);
     };
-    const auto for_corners = [&](const Progress& part, const auto& visit) {
-      parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kTrianglesPerTask, threads,
-                      part, [&](std::int64_t begin, std::int64_t end) {
+    const auto for_corners = [&](const Run& part, const auto& visit) {
+      parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kTrianglesPerTask, part,
+                      [&](std::int64_t begin, std::int64_t end) {
                         for (std::int64_t t = begin; t < end; ++t) {
                           const Corners corners = mesh[static_cast<std::size_t>(t)];
                           if (is_flat(corners)) continue;
@@ -70,15 +69,15 @@ struct TrianglesAt {
                         }
                       });
     };
-    for_corners(progress.part(0.0, 0.4), [&](std::uint32_t v, std::uint32_t) { next(v); });
+    const Stages stages(run, {2, 3});
+    for_corners(stages[0], [&](std::uint32_t v, std::uint32_t) { next(v); });
     std::uint32_t sum = 0;
     for (std::uint32_t& start : starts) {
       sum += start;
       start = sum - start;
     }
     triangles.resize(sum);
-    for_corners(progress.part(0.4, 1.0),
-                [&](std::uint32_t v, std::uint32_t t) { triangles[next(v)] = t; });
+    for_corners(stages[1], [&](std::uint32_t v, std::uint32_t t) { triangles[next(v)] = t; });
     // By now each entry holds the start of the next vertex.
     for (std::size_t v = vertices; v > 0; --v) starts[v] = starts[v - 1];
     starts[0] = 0;
@@ -166,12 +165,12 @@ class FanCounter {
   std::vector<std::pair<std::uint32_t, std::uint64_t>> borders_;  // fan, edge
 };
 
-FanCounts count_all(const NamedTriangles& mesh, const TrianglesAt& at, const Progress& progress,
-                    int threads, DisjointSets<std::uint32_t>* parts) {
+FanCounts count_all(const NamedTriangles& mesh, const TrianglesAt& at, const Run& run,
+                    DisjointSets<std::uint32_t>* parts) {
   std::mutex mutex;
   FanCounts all;
   parallel_ranges(
-      static_cast<std::int64_t>(at.starts.size()) - 1, kFansPerTask, threads, progress,
+      static_cast<std::int64_t>(at.starts.size()) - 1, kFansPerTask, run,
       [&](std::int64_t begin, std::int64_t end) {
         FanCounter fans(mesh, parts);
         for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
@@ -211,7 +210,7 @@ std::size_t count_loops(const std::vector<std::uint64_t>& edges, const FanCounts
 // For each vertex the first boundary vertex at its position, or itself if it is not on a boundary.
 // Empty if no two boundary vertices coincide.
 std::vector<std::int32_t> welded_borders(const PositionView& positions, const FanCounts& counts,
-                                         const Progress& progress, int threads) {
+                                         const Run& run) {
   std::vector<std::uint32_t> ends;
   for (const auto& [one, other] : counts.borders) {
     ends.push_back(static_cast<std::uint32_t>(other >> 32U));
@@ -222,7 +221,7 @@ std::vector<std::int32_t> welded_borders(const PositionView& positions, const Fa
   std::vector<Vector3> places;
   places.reserve(ends.size());
   for (const std::uint32_t v : ends) places.push_back(positions[v]);
-  const std::vector<std::int32_t> firsts = first_at_position(places, progress, threads);
+  const std::vector<std::int32_t> firsts = first_at_position(places, run);
   bool is_same = true;
   for (std::size_t i = 0; i < firsts.size(); ++i) {
     is_same = is_same && firsts[i] == static_cast<std::int32_t>(i);
@@ -300,32 +299,32 @@ MeshTopology topology_of(const NamedTriangles& mesh, const FanCounts& counts,
 
 }  // namespace
 
-MeshTopology mesh_topology(const InputMesh& mesh, bool welds, const Progress& progress,
-                           int threads) {
+MeshTopology mesh_topology(const InputMesh& mesh, bool welds, const Run& run) {
   check_mesh(mesh, kLargestCoordinate);
   const std::size_t count = mesh.triangles.size();
   if (3 * count > std::numeric_limits<std::int32_t>::max()) {
     throw_invalid("triangles: found " + std::to_string(count) + "; at most 715827882 are allowed");
   }
   std::vector<std::int32_t> names;
-  const auto counted = [&](DisjointSets<std::uint32_t>* parts, const Progress& part) {
+  const auto counted = [&](DisjointSets<std::uint32_t>* parts, const Run& part) {
     const NamedTriangles named = {mesh.triangles, names};
-    const TrianglesAt at(named, mesh.positions.size(), part.part(0.0, 0.5), threads);
-    return count_all(named, at, part.part(0.5, 1.0), threads, parts);
+    const Stages stages(part, {1, 1});
+    const TrianglesAt at(named, mesh.positions.size(), stages[0]);
+    return count_all(named, at, stages[1], parts);
   };
   DisjointSets<std::uint32_t> parts(count);
-  FanCounts counts = counted(&parts, progress.part(0.0, 0.5));
+  FanCounts counts = counted(&parts, run.part(0.0, 0.5));
   if (welds && !counts.borders.empty()) {
-    names = welded_borders(mesh.positions, counts, progress.part(0.5, 0.6), threads);
+    names = welded_borders(mesh.positions, counts, run.part(0.5, 0.6));
     if (!names.empty()) {
       parts = DisjointSets<std::uint32_t>(count);
-      counts = counted(&parts, progress.part(0.6, 0.9));
+      counts = counted(&parts, run.part(0.6, 0.9));
     }
   }
   const NamedTriangles named = {mesh.triangles, names};
   MeshTopology result = topology_of(named, counts, std::move(parts));
   result.cavities = count_cavities(mesh, named, result);
-  progress.report(1.0);
+  run.report(1.0);
   return result;
 }
 

@@ -32,11 +32,10 @@ double winding_of(const std::array<Vector3, 3>& corners, const Vector3& point) {
 
 // Sum of all parts' winding numbers, each times its factor.
 double winding_around(const InputMesh& mesh, std::span<const std::uint32_t> part_of,
-                      std::span<const double> factors, const Vector3& point,
-                      const Progress& progress, int threads) {
+                      std::span<const double> factors, const Vector3& point, const Run& run) {
   const auto rows = static_cast<std::int64_t>(mesh.triangles.size());
   std::vector<double> sums(static_cast<std::size_t>(range_count(rows, kRowsOfTask)), 0.0);
-  parallel_ranges(rows, kRowsOfTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
+  parallel_ranges(rows, kRowsOfTask, run, [&](std::int64_t begin, std::int64_t end) {
     double& own = sums[static_cast<std::size_t>(begin / kRowsOfTask)];
     for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
       const double factor = factors[part_of[t]];
@@ -85,8 +84,7 @@ std::vector<double> factors_around(std::span<const ClosedPart> parts,
 }  // namespace
 
 std::vector<bool> parts_to_turn(const InputMesh& mesh, std::span<const ClosedPart> parts,
-                                std::span<const std::uint32_t> part_of, const Progress& progress,
-                                int threads) {
+                                std::span<const std::uint32_t> part_of, const Run& run) {
   double sum = 0.0;
   for (const ClosedPart& part : parts) sum += part.is_mixed ? 0.0 : part.volume;
   // Signs of the parts' winding numbers: as they will be, and as if all were oriented outward.
@@ -101,9 +99,8 @@ std::vector<bool> parts_to_turn(const InputMesh& mesh, std::span<const ClosedPar
     const bool is_mixed = parts[p].is_mixed;
     is_turned[p] = signs[p] < 0.0;
     if (!is_mixed && signs[p] * parts[p].volume >= 0.0) continue;
-    const Progress part =
-        progress.part(static_cast<double>(p) / static_cast<double>(parts.size()),
-                      static_cast<double>(p + 1) / static_cast<double>(parts.size()));
+    const Run part = run.part(static_cast<double>(p) / static_cast<double>(parts.size()),
+                              static_cast<double>(p + 1) / static_cast<double>(parts.size()));
     bool is_enclosed = true;
     for (const Vector3& point :
          points_of(mesh, part_of, p, parts[p], is_mixed ? kPointsPerMixedPart : 1)) {
@@ -113,7 +110,7 @@ std::vector<bool> parts_to_turn(const InputMesh& mesh, std::span<const ClosedPar
         is_enclosed = false;
         break;
       }
-      const double winding = winding_around(mesh, part_of, around, point, part, threads);
+      const double winding = winding_around(mesh, part_of, around, point, part);
       const bool is_odd = static_cast<std::int64_t>(std::floor(winding + 0.5)) % 2 != 0;
       is_enclosed = is_mixed ? is_odd : winding >= 0.5;
       if (!is_enclosed) break;
@@ -121,7 +118,7 @@ std::vector<bool> parts_to_turn(const InputMesh& mesh, std::span<const ClosedPar
     // At this point mixed parts are oriented outward, the others inward.
     if (is_enclosed == is_mixed) is_turned[p] = !is_turned[p];
   }
-  progress.report(1.0);
+  run.report(1.0);
   return is_turned;
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -32,7 +32,6 @@ struct ClosedPart {
 /// turned unless the others wind around them. Mixed parts are cavities if an odd number of others
 /// contain them. Throws Error(kCancelled).
 std::vector<bool> parts_to_turn(const InputMesh& mesh, std::span<const ClosedPart> parts,
-                                std::span<const std::uint32_t> part_of, const Progress& progress,
-                                int threads);
+                                std::span<const std::uint32_t> part_of, const Run& run);
 
 }  // namespace prefilter

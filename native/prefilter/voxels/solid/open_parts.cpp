@@ -77,8 +77,7 @@ WorkMesh winding_parts(const WorkMesh& mesh, const Patches& patches,
 }
 
 // Voxelizes a mesh with its holes closed, in a root around all patches.
-Octree voxels_of(const WorkMesh& mesh, const Patches& patches, double cell,
-                 const Progress& progress, int threads) {
+Octree voxels_of(const WorkMesh& mesh, const Patches& patches, double cell, const Run& run) {
   Box box = kEmptyBox;
   for (const FacePatch& patch : patches.patches) box.include(patch.box);
   Octree octree = empty_tree_around(box, cell);
@@ -91,8 +90,8 @@ Octree voxels_of(const WorkMesh& mesh, const Patches& patches, double cell,
   holes.method = HoleMethod::kFan;
   // Close sheets too, so that they leave no contour and get thickened.
   holes.leaves_losses = false;
-  holes.progress = progress.part(0.0, 0.3);
-  holes.threads = threads;
+  const Stages stages(run, {3, 7});
+  holes.run = stages[0];
   const Caps caps = close_holes({mesh.positions, mesh.triangles}, holes);
   std::vector<Vector3> positions = mesh.positions;
   positions.insert(positions.end(), caps.positions.begin(), caps.positions.end());
@@ -104,8 +103,7 @@ Octree voxels_of(const WorkMesh& mesh, const Patches& patches, double cell,
   VoxelizeOptions options;
   options.depth = octree.depth;
   options.bounds = octree.bounds;
-  options.threads = threads;
-  options.progress = progress.part(0.3, 1.0);
+  options.run = stages[1];
   return voxelize({positions, triangles}, options);
 }
 
@@ -150,13 +148,13 @@ void add_faces(const WorkMesh& mesh, const Patches& patches, std::span<const std
 }
 
 // Edges of loops that stay open when a mesh's holes are closed, sorted.
-std::vector<Edge> open_edges(const WorkMesh& mesh, const Progress& progress, int threads) {
+std::vector<Edge> open_edges(const WorkMesh& mesh, const Run& run) {
   const InputMesh input{mesh.positions, mesh.triangles};
-  const BorderLoops loops = border_loops(input, progress.part(0.0, 0.5), threads);
+  const Stages stages(run, {5, 4, 1});
+  const BorderLoops loops = border_loops(input, stages[0]);
   std::vector<unsigned char> is_kept(loops.size(), 1);
-  const std::vector<LoopCap> caps =
-      first_caps(input, loops, is_kept, HoleMethod::kFlat, progress.part(0.5, 0.9), threads);
-  drop_sheet_loops(input, loops, caps, progress.part(0.9, 1.0), is_kept);
+  const std::vector<LoopCap> caps = first_caps(input, loops, is_kept, HoleMethod::kFlat, stages[1]);
+  drop_sheet_loops(input, loops, caps, stages[2], is_kept);
   std::vector<Edge> edges;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     if (is_kept[i] != 0) continue;
@@ -173,9 +171,9 @@ std::vector<Edge> open_edges(const WorkMesh& mesh, const Progress& progress, int
 // Turns parts into sheets if they are thickened in places and their borders would stay open like a
 // sheet's, which leaves their winding number at 1/2. Returns whether there are any.
 bool turn_into_sheets(const WorkMesh& mesh, const WorkMesh& result, const Patches& patches,
-                      const Progress& progress, int threads, std::span<PartDecision> decisions) {
+                      const Run& run, std::span<PartDecision> decisions) {
   if (std::none_of(decisions.begin(), decisions.end(), is_partly_thickened)) return false;
-  const std::vector<Edge> edges = open_edges(result, progress, threads);
+  const std::vector<Edge> edges = open_edges(result, run);
   bool has_changed = false;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::size_t p = patches.patch_of[t];
@@ -214,17 +212,16 @@ void count_decisions(std::span<const PartDecision> decisions, SolidReport* repor
 void add_coverage_by_others(const WorkMesh& mesh, const Patches& patches,
                             std::span<const std::size_t> parts,
                             std::span<const PartDecision> decisions, const Octree& octree,
-                            double cell, const Progress& progress, int threads,
-                            std::span<float> coverage) {
+                            double cell, const Run& run, std::span<float> coverage) {
   const WorkMesh others = winding_parts(mesh, patches, decisions, parts);
   if (parts.empty() || others.triangles.empty()) return;
   std::vector<bool> may_be_covered(mesh.triangles.size());
   for (std::size_t t = 0; t < may_be_covered.size(); ++t) {
     may_be_covered[t] = std::binary_search(parts.begin(), parts.end(), patches.patch_of[t]);
   }
-  const Octree without = voxels_of(others, patches, cell, progress.part(0.0, 0.8), threads);
-  add_covered(mesh.view(), octree, without, may_be_covered, progress.part(0.8, 1.0), threads,
-              coverage);
+  const Stages stages(run, {4, 1});
+  const Octree without = voxels_of(others, patches, cell, stages[0]);
+  add_covered(mesh.view(), octree, without, may_be_covered, stages[1], coverage);
 }
 
 // Decisions on all parts.
@@ -243,26 +240,25 @@ struct PartDecisions {
 // `grid` and `sides` are only set if there are open parts.
 PartDecisions decide(const WorkMesh& mesh, const Patches& patches, std::span<const double> areas,
                      const ReachGrid* grid, std::span<const TriangleSides> sides,
-                     const SolidOptions& options, const Progress& progress) {
+                     const SolidOptions& options, const Run& run) {
   PartDecisions plan;
   plan.decisions.resize(patches.patches.size());
   for (int round = 0; round < kDecisionRounds; ++round) {
-    const Progress part = progress.part(static_cast<double>(round) / kDecisionRounds,
-                                        static_cast<double>(round + 1) / kDecisionRounds);
+    const Run part = run.part(static_cast<double>(round) / kDecisionRounds,
+                              static_cast<double>(round + 1) / kDecisionRounds);
     const WorkMesh winding = winding_parts(mesh, patches, plan.decisions);
     if (winding.triangles.empty()) break;
-    const Octree octree =
-        voxels_of(winding, patches, options.cell, part.part(0.0, 0.5), options.threads);
+    const Octree octree = voxels_of(winding, patches, options.cell, part.part(0.0, 0.5));
     const double thickness = options.thickness * options.cell;
-    plan.coverage = contour_coverage(mesh.view(), octree, part.part(0.5, 0.6), options.threads);
+    plan.coverage = contour_coverage(mesh.view(), octree, part.part(0.5, 0.6));
     const std::vector<std::size_t> parts = parts_to_cover(
         patches, part_areas(patches, areas, plan.coverage, sides), thickness, plan.decisions);
     add_coverage_by_others(mesh, patches, parts, plan.decisions, octree, options.cell,
-                           part.part(0.6, 0.9), options.threads, plan.coverage);
+                           part.part(0.6, 0.9), plan.coverage);
     bool has_changed = false;
     if (round == 0 && grid != nullptr && options.gap > 0.0) {
       plan.is_filled =
-          fill_hollow(patches, areas, sides, *grid, octree, options.threads, plan.decisions);
+          fill_hollow(patches, areas, sides, *grid, octree, options.run.threads(), plan.decisions);
       has_changed = !plan.is_filled.empty();
     }
     has_changed |= decide_parts(patches, part_areas(patches, areas, plan.coverage, sides),
@@ -274,8 +270,8 @@ PartDecisions decide(const WorkMesh& mesh, const Patches& patches, std::span<con
 
 }  // namespace
 
-bool repair_open_parts(const Patches& patches, const SolidOptions& options,
-                       const Progress& progress, WorkMesh* mesh, SolidReport* report) {
+bool repair_open_parts(const Patches& patches, const SolidOptions& options, const Run& run,
+                       WorkMesh* mesh, SolidReport* report) {
   const auto& all = patches.patches;
   const double cell = options.cell;
   const double thickness = options.thickness * cell;
@@ -289,24 +285,25 @@ bool repair_open_parts(const Patches& patches, const SolidOptions& options,
   std::optional<ReachGrid> grid;
   std::vector<TriangleSides> sides;
   TurnedParts turned;
+  const Stages stages(run, {4, 2, 10, 2, 1, 1});
   if (has_open) {
-    grid.emplace(mesh->view(), cell, options.gap * cell, progress.part(0.0, 0.2), options.threads);
-    sides = sides_of_triangles(mesh->view(), *grid, progress.part(0.2, 0.3), options.threads);
+    grid.emplace(mesh->view(), cell, options.gap * cell, stages[0]);
+    sides = sides_of_triangles(mesh->view(), *grid, stages[1]);
     turned = turn_open_parts(patches, areas, cell, mesh, sides);
     report->turned_parts += turned.parts;
     report->turned_faces += turned.faces;
   }
-  PartDecisions plan = decide(*mesh, patches, areas, grid ? &*grid : nullptr, sides, options,
-                              progress.part(0.3, 0.8));
+  PartDecisions plan =
+      decide(*mesh, patches, areas, grid ? &*grid : nullptr, sides, options, stages[2]);
   const auto thin_now = [&] {
     return thin_triangles(patches, plan.coverage, plan.decisions,
                           options.sheets == SheetMethod::kFaces ? 0.5F : 1.0F);
   };
   std::vector<std::uint32_t> thin = thin_now();
-  const auto make = [&](const Progress& part) {
+  const auto make = [&](const Run& part) {
     WorkMesh result = winding_parts(*mesh, patches, plan.decisions);
     if (!plan.is_filled.empty()) {
-      append(filled_regions(mesh->view(), *grid, plan.is_filled, part, options.threads), &result);
+      append(filled_regions(mesh->view(), *grid, plan.is_filled, part), &result);
     }
     if (options.sheets == SheetMethod::kFaces) {
       add_faces(*mesh, patches, thin, &result);
@@ -317,17 +314,16 @@ bool repair_open_parts(const Patches& patches, const SolidOptions& options,
   };
   const bool is_same = thin.empty() && plan.keeps_winding();
   if (!is_same) {
-    WorkMesh result = make(progress.part(0.8, 0.9));
+    WorkMesh result = make(stages[3]);
     if (options.sheets == SheetMethod::kFaces &&
-        turn_into_sheets(*mesh, result, patches, progress.part(0.9, 0.95), options.threads,
-                         plan.decisions)) {
+        turn_into_sheets(*mesh, result, patches, stages[4], plan.decisions)) {
       thin = thin_now();
-      result = make(progress.part(0.95, 1.0));
+      result = make(stages[5]);
     }
     std::swap(*mesh, result);
   }
   count_decisions(plan.decisions, report);
-  progress.report(1.0);
+  run.report(1.0);
   return !is_same || turned.any();
 }
 

@@ -146,20 +146,20 @@ void add_borders(const MeshView<std::int32_t>& mesh, const EdgeTable& edges, Pat
 
 }  // namespace
 
-Patches find_patches(const MeshView<std::int32_t>& mesh, const Progress& progress, int threads) {
-  const EdgeTable edges(mesh, progress.part(0.0, 0.4), threads);
+Patches find_patches(const MeshView<std::int32_t>& mesh, const Run& run) {
+  const EdgeTable edges(mesh, run.part(0.0, 0.4));
   Patches result;
   result.patch_of.assign(mesh.triangles.size(), kNone);
   result.is_turned.assign(mesh.triangles.size(), 0);
   PatchWalk patches(mesh, edges, &result);
-  const Progress walking = progress.part(0.4, 0.8);
+  const Run walking = run.part(0.4, 0.8);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     if (t % 4096 == 0)
       walking.report(static_cast<double>(t) / static_cast<double>(mesh.triangles.size()));
     if (result.patch_of[t] == kNone) patches.walk(t);
   }
   add_borders(mesh, edges, &result);
-  progress.report(1.0);
+  run.report(1.0);
   return result;
 }
 

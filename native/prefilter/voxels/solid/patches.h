@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/solid/edge_table.h"
 
 namespace prefilter {
@@ -36,6 +36,6 @@ struct Patches {
 
 /// Finds the patches, and the turns that make each consistent while turning at most half of its
 /// area.
-Patches find_patches(const MeshView<std::int32_t>& mesh, const Progress& progress, int threads);
+Patches find_patches(const MeshView<std::int32_t>& mesh, const Run& run);
 
 }  // namespace prefilter

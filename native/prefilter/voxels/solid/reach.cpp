@@ -61,7 +61,7 @@ std::vector<std::uint8_t> widened(std::vector<std::uint8_t> cells, const std::ar
     }
   };
   for (std::size_t axis = 0; axis < 3 && radius > 0; ++axis) {
-    parallel_for(size[0], threads, Progress(), [&](std::int64_t x) { pass(axis, x); });
+    parallel_for(size[0], Run(threads), [&](std::int64_t x) { pass(axis, x); });
     cells.swap(other);
   }
   return cells;
@@ -84,8 +84,7 @@ void ReachGrid::for_neighbors(std::size_t cell, const Visit& visit) const {
   if (x + 1 < static_cast<std::size_t>(size_[0])) visit(cell + ny * nz);
 }
 
-ReachGrid::ReachGrid(const MeshView<std::int32_t>& mesh, double cell, double gap,
-                     const Progress& progress, int threads) {
+ReachGrid::ReachGrid(const MeshView<std::int32_t>& mesh, double cell, double gap, const Run& run) {
   Box box = kEmptyBox;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (const Vector3& corner : mesh.corners(t)) box.include(corner);
@@ -100,15 +99,15 @@ ReachGrid::ReachGrid(const MeshView<std::int32_t>& mesh, double cell, double gap
     origin_[a] = box.low[a] + box.size(a) / 2.0 - size_[a] * cell_ / 2.0;
   }
   labels_.assign(index(size_[0] - 1, size_[1] - 1, size_[2] - 1) + 1, kUnset);
-  mark_surface(mesh, progress.part(0.0, 0.5), threads);
+  mark_surface(mesh, run.part(0.0, 0.5));
 
   std::vector<std::uint8_t> is_surface(labels_.size());
   for (std::size_t i = 0; i < labels_.size(); ++i) is_surface[i] = labels_[i] == kSurface ? 1 : 0;
-  std::vector<std::uint8_t> is_free = widened(std::move(is_surface), size_, radius, threads);
+  std::vector<std::uint8_t> is_free = widened(std::move(is_surface), size_, radius, run.threads());
   for (std::uint8_t& flag : is_free) flag ^= 1U;
-  progress.report(0.6);
+  run.report(0.6);
   flood(0, kOutside, &is_free);
-  progress.report(0.8);
+  run.report(0.8);
   for (std::size_t i = 0; (i = first_of(1, is_free, i, is_free.size())) < is_free.size();) {
     flood(i, region_end_, &is_free);
     if (region_end_ < kUnset - 1) ++region_end_;
@@ -118,13 +117,12 @@ ReachGrid::ReachGrid(const MeshView<std::int32_t>& mesh, double cell, double gap
     if (label == kUnset) label = kPocket;
   }
   stack_ = {};
-  progress.report(1.0);
+  run.report(1.0);
 }
 
-void ReachGrid::mark_surface(const MeshView<std::int32_t>& mesh, const Progress& progress,
-                             int threads) {
+void ReachGrid::mark_surface(const MeshView<std::int32_t>& mesh, const Run& run) {
   const CellBox all = {{0, 0, 0}, size_};
-  parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kRowsPerTask, threads, progress,
+  parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kRowsPerTask, run,
                   [&](std::int64_t begin, std::int64_t end) {
                     for (std::int64_t t = begin; t < end; ++t) {
                       CellPolygon polygon;

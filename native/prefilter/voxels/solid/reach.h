@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 namespace prefilter {
 
@@ -25,8 +25,7 @@ class ReachGrid {
 
   /// Cells have side `cell`, or larger where there would be more than 256 along an axis; `gap` is a
   /// length. Throws Error(kCancelled).
-  ReachGrid(const MeshView<std::int32_t>& mesh, double cell, double gap, const Progress& progress,
-            int threads);
+  ReachGrid(const MeshView<std::int32_t>& mesh, double cell, double gap, const Run& run);
 
   double cell() const { return cell_; }
   const Vector3& origin() const { return origin_; }
@@ -51,7 +50,7 @@ class ReachGrid {
   static constexpr double kMaxRayCells = 4.0;
   static constexpr Label kUnset = 0xFFFF;
 
-  void mark_surface(const MeshView<std::int32_t>& mesh, const Progress& progress, int threads);
+  void mark_surface(const MeshView<std::int32_t>& mesh, const Run& run);
   // Labels the connected component of free cells around `seed`, and marks them as no longer free.
   void flood(std::size_t seed, Label label, std::vector<std::uint8_t>* is_free);
   void grow(int steps);

@@ -65,13 +65,13 @@ struct Others {
 
 // Measures the parts without their caps, and the sum of all others.
 Others measure_parts(const InputMesh& mesh, const BorderLoops& loops, const UnitFrame& frame,
-                     const Progress& progress, Parts* parts) {
+                     const Run& run, Parts* parts) {
   std::vector<Part*> part_of(mesh.positions.size(), nullptr);
   for (auto& [id, part] : *parts) part_of[id] = &part;
   Others others;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (t % kRowsPerReport == 0) {
-      progress.report(static_cast<double>(t) / static_cast<double>(mesh.triangles.size()));
+      run.report(static_cast<double>(t) / static_cast<double>(mesh.triangles.size()));
     }
     const auto first = static_cast<std::size_t>(mesh.triangles[t][0]);
     if (Part* part = part_of[loops.parts[first]]) {
@@ -119,13 +119,13 @@ void drop_single_face_loops(const BorderLoops& loops, std::span<unsigned char> i
 }
 
 CappedSolids drop_sheet_loops(const InputMesh& mesh, const BorderLoops& loops,
-                              std::span<const LoopCap> caps, const Progress& progress,
+                              std::span<const LoopCap> caps, const Run& run,
                               std::span<unsigned char> is_kept) {
   CappedSolids solids;
   const UnitFrame frame = frame_of(mesh);
   if (loops.size() == 0 || !(frame.scale > 0.0)) return solids;
   Parts parts = parts_with_loops(mesh, loops, is_kept, frame);
-  const Others others = measure_parts(mesh, loops, frame, progress, &parts);
+  const Others others = measure_parts(mesh, loops, frame, run, &parts);
   double whole = others.volume;
   for (auto& [id, part] : parts) {
     add_caps(mesh, loops, caps, frame, &part);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/solid/border_loops.h"
 #include "prefilter/voxels/solid/loop_caps.h"
 
@@ -28,7 +28,7 @@ void drop_single_face_loops(const BorderLoops& loops, std::span<unsigned char> i
 /// width (12 % where the mesh is inside out). Clears `is_kept` for their loops, except for holes of
 /// up to a quarter of their area. `is_kept` has one entry per loop.
 CappedSolids drop_sheet_loops(const InputMesh& mesh, const BorderLoops& loops,
-                              std::span<const LoopCap> caps, const Progress& progress,
+                              std::span<const LoopCap> caps, const Run& run,
                               std::span<unsigned char> is_kept);
 
 }  // namespace prefilter

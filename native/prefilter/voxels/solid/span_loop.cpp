@@ -74,7 +74,7 @@ Chain chain_between(std::span<const Vector3> loop, std::size_t from, std::size_t
 
 std::vector<std::array<std::uint32_t, 3>> smallest_span(std::span<const Vector3> points,
                                                         std::span<const Vector3> normals,
-                                                        const Progress& progress) {
+                                                        const Run& run) {
   const std::size_t count = points.size();
   struct Best {
     double cost = 0.0;
@@ -87,7 +87,7 @@ std::vector<std::array<std::uint32_t, 3>> smallest_span(std::span<const Vector3>
   for (std::size_t i = 0; i + 1 < count; ++i)
     best(i, i + 1).doubled = kSurroundingArea * normals[i];
   for (std::size_t length = 2; length < count; ++length) {
-    progress.report(static_cast<double>(length) / static_cast<double>(count));
+    run.report(static_cast<double>(length) / static_cast<double>(count));
     for (std::size_t i = 0; i + length < count; ++i) {
       const std::size_t k = i + length;
       Best cheapest;
@@ -145,12 +145,11 @@ std::vector<std::uint32_t> simplify_loop(std::span<const Vector3> loop, std::siz
   return kept;
 }
 
-void insert_points(std::span<const Vector3> loop, bool bends, HolePatch* patch,
-                   const Progress& progress) {
+void insert_points(std::span<const Vector3> loop, bool bends, HolePatch* patch, const Run& run) {
   const auto count = static_cast<std::uint32_t>(loop.size());
   std::vector<std::uint32_t> changed;
   do {
-    progress.report(0.0);
+    run.report(0.0);
     changed.clear();
     const auto triangles = static_cast<std::uint32_t>(patch->triangles().size());
     for (std::uint32_t t = 0; t < triangles; ++t) {
@@ -168,7 +167,7 @@ void insert_points(std::span<const Vector3> loop, bool bends, HolePatch* patch,
         break;
       }
     }
-    patch->flip(changed, bends, progress.part(0.0, 0.0));
+    patch->flip(changed, bends, run.part(0.0, 0.0));
   } while (!changed.empty());
 }
 
@@ -185,18 +184,19 @@ std::vector<Vector3> mean_normals(std::span<const Vector3> normals,
 }
 
 HolePatch span_loop(std::span<const Vector3> loop, std::span<const Vector3> normals,
-                    const Progress& progress) {
+                    const Run& run) {
   const std::vector<std::uint32_t> kept = simplify_loop(loop, kMaxSpannedPoints);
   std::vector<Vector3> points;
   for (const std::uint32_t i : kept) points.push_back(loop[i]);
+  const Stages stages(run, {5, 4, 1});
   std::vector<std::array<std::uint32_t, 3>> triangles =
-      smallest_span(points, mean_normals(normals, kept), progress.part(0.0, 0.5));
+      smallest_span(points, mean_normals(normals, kept), stages[0]);
   for (auto& triangle : triangles) {
     for (std::uint32_t& corner : triangle) corner = kept[corner];
   }
   HolePatch patch({loop.begin(), loop.end()}, triangles, {normals.begin(), normals.end()});
-  insert_points(loop, false, &patch, progress.part(0.5, 0.9));
-  patch.flip_all(false, progress.part(0.9, 1.0));
+  insert_points(loop, false, &patch, stages[1]);
+  patch.flip_all(false, stages[2]);
   return patch;
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/solid/hole_patch.h"
 
 namespace prefilter {
@@ -20,7 +20,7 @@ namespace prefilter {
 /// surface at the edges, from each point to the next; zero where there is none. Throws
 /// Error(kCancelled).
 HolePatch span_loop(std::span<const Vector3> loop, std::span<const Vector3> normals,
-                    const Progress& progress);
+                    const Run& run);
 
 /// Up to `most` points of a loop that approximate the others and are spread evenly, in order,
 /// beginning with point 0.
@@ -32,7 +32,6 @@ std::vector<Vector3> mean_normals(std::span<const Vector3> normals,
 
 /// Inserts the loop's points that the border of a patch skips; the patch must hold them already as
 /// unused points. Flips edges like HolePatch::flip. Throws Error(kCancelled).
-void insert_points(std::span<const Vector3> loop, bool bends, HolePatch* patch,
-                   const Progress& progress);
+void insert_points(std::span<const Vector3> loop, bool bends, HolePatch* patch, const Run& run);
 
 }  // namespace prefilter

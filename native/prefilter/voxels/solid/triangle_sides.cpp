@@ -49,10 +49,9 @@ TriangleSides sides_of(const std::array<Vector3, 3>& corners, const ReachGrid& g
 }  // namespace
 
 std::vector<TriangleSides> sides_of_triangles(const MeshView<std::int32_t>& mesh,
-                                              const ReachGrid& grid, const Progress& progress,
-                                              int threads) {
+                                              const ReachGrid& grid, const Run& run) {
   std::vector<TriangleSides> sides(mesh.triangles.size());
-  parallel_ranges(static_cast<std::int64_t>(sides.size()), kSidesPerTask, threads, progress,
+  parallel_ranges(static_cast<std::int64_t>(sides.size()), kSidesPerTask, run,
                   [&](std::int64_t begin, std::int64_t end) {
                     for (auto t = static_cast<std::size_t>(begin);
                          t < static_cast<std::size_t>(end); ++t) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 #include "prefilter/voxels/solid/reach.h"
 
 namespace prefilter {
@@ -24,7 +24,6 @@ struct TriangleSides {
 /// The shares of each triangle, by sampling; all 0 for triangles without area. Throws
 /// Error(kCancelled).
 std::vector<TriangleSides> sides_of_triangles(const MeshView<std::int32_t>& mesh,
-                                              const ReachGrid& grid, const Progress& progress,
-                                              int threads);
+                                              const ReachGrid& grid, const Run& run);
 
 }  // namespace prefilter

@@ -98,8 +98,8 @@ struct BorderEdge {
   std::uint32_t to;
 };
 
-std::vector<BorderEdge> border_edges(const WorkMesh& mesh, const Progress& progress, int threads) {
-  const EdgeTable edges(mesh.view(), progress, threads);
+std::vector<BorderEdge> border_edges(const WorkMesh& mesh, const Run& run) {
+  const EdgeTable edges(mesh.view(), run);
   std::vector<BorderEdge> result;
   for (std::size_t low = 0; low < edges.vertex_count(); ++low) {
     edges.for_edges_from(low, [&](std::size_t high, std::span<const std::uint64_t> uses) {
@@ -228,17 +228,17 @@ void keep_one_of_each(const std::vector<Corners>& triangles,
 
 }  // namespace
 
-std::vector<std::int32_t> first_at_position(const PositionView& positions, const Progress& progress,
-                                            int threads) {
+std::vector<std::int32_t> first_at_position(const PositionView& positions, const Run& run) {
   const std::size_t slots = std::bit_ceil(positions.size() / 2 + 1);
+  const Stages stages(run, {4, 1});
   const Buckets buckets(
       slots, positions.size(),
       [&](std::size_t begin, std::size_t end, const auto& put) {
         for (std::size_t v = begin; v < end; ++v) put(hash_of(positions[v]) & (slots - 1), v);
       },
-      progress.part(0.0, 0.8), threads);
+      stages[0]);
   std::vector<std::int32_t> names(positions.size());
-  parallel_ranges(static_cast<std::int64_t>(slots), kSlotsPerTask, threads, progress.part(0.8, 1.0),
+  parallel_ranges(static_cast<std::int64_t>(slots), kSlotsPerTask, stages[1],
                   [&](std::int64_t begin, std::int64_t end) {
                     for (auto slot = static_cast<std::size_t>(begin);
                          slot < static_cast<std::size_t>(end); ++slot) {
@@ -253,17 +253,16 @@ std::vector<std::int32_t> first_at_position(const PositionView& positions, const
   return names;
 }
 
-std::size_t weld_equal(WorkMesh* mesh, const Progress& progress, int threads) {
-  const std::size_t count =
-      rename(first_at_position(mesh->positions, progress.part(0.0, 0.9), threads), mesh);
-  progress.report(1.0);
+std::size_t weld_equal(WorkMesh* mesh, const Run& run) {
+  const std::size_t count = rename(first_at_position(mesh->positions, run.part(0.0, 0.9)), mesh);
+  run.report(1.0);
   return count;
 }
 
-std::size_t weld_borders(WorkMesh* mesh, double distance, const Progress& progress, int threads) {
+std::size_t weld_borders(WorkMesh* mesh, double distance, const Run& run) {
   const std::vector<Vector3>& positions = mesh->positions;
   const std::vector<std::uint32_t> vertices =
-      ends_of(border_edges(*mesh, progress.part(0.0, 0.5), threads), positions.size());
+      ends_of(border_edges(*mesh, run.part(0.0, 0.5)), positions.size());
   if (vertices.empty()) return 0;
   // Squared welding distance of each vertex.
   std::vector<double> reaches(positions.size(), distance * distance);
@@ -280,7 +279,7 @@ std::size_t weld_borders(WorkMesh* mesh, double distance, const Progress& progre
   std::vector<std::int32_t> names(positions.size());
   for (std::size_t v = 0; v < names.size(); ++v) names[v] = static_cast<std::int32_t>(v);
   NearbyPoints kept(vertices.size(), distance);
-  const Progress welding = progress.part(0.5, 0.9);
+  const Run welding = run.part(0.5, 0.9);
   for (std::uint32_t i = 0; i < vertices.size(); ++i) {
     if (i % 4096 == 0)
       welding.report(static_cast<double>(i) / static_cast<double>(vertices.size()));
@@ -299,13 +298,13 @@ std::size_t weld_borders(WorkMesh* mesh, double distance, const Progress& progre
     if (name == v) kept.add(i, positions[v]);
   }
   const std::size_t count = rename(names, mesh);
-  progress.report(1.0);
+  run.report(1.0);
   return count;
 }
 
-std::size_t split_borders(WorkMesh* mesh, double distance, const Progress& progress, int threads) {
+std::size_t split_borders(WorkMesh* mesh, double distance, const Run& run) {
   const std::vector<Vector3>& positions = mesh->positions;
-  const std::vector<BorderEdge> edges = border_edges(*mesh, progress.part(0.0, 0.5), threads);
+  const std::vector<BorderEdge> edges = border_edges(*mesh, run.part(0.0, 0.5));
   if (edges.empty()) return 0;
   const std::vector<std::uint32_t> vertices = ends_of(edges, positions.size());
   double sum = 0.0;
@@ -313,7 +312,7 @@ std::size_t split_borders(WorkMesh* mesh, double distance, const Progress& progr
   const double reach = std::max(distance, sum / static_cast<double>(edges.size()));
   NearbyPoints points(vertices.size(), reach);
   for (std::uint32_t i = 0; i < vertices.size(); ++i) points.add(i, positions[vertices[i]]);
-  const Progress splitting = progress.part(0.5, 0.9);
+  const Run splitting = run.part(0.5, 0.9);
   std::vector<SplitPoint> splits;
   for (std::size_t e = 0; e < edges.size(); ++e) {
     if (e % 4096 == 0) splitting.report(static_cast<double>(e) / static_cast<double>(edges.size()));
@@ -353,11 +352,11 @@ std::size_t split_borders(WorkMesh* mesh, double distance, const Progress& progr
     split_triangle(splits[i].triangle, std::span(splits).subspan(i, end - i), mesh);
     i = end;
   }
-  progress.report(1.0);
+  run.report(1.0);
   return splits.size();
 }
 
-std::size_t drop_duplicates(WorkMesh* mesh, const Progress& progress, int threads) {
+std::size_t drop_duplicates(WorkMesh* mesh, const Run& run) {
   auto& triangles = mesh->triangles;
   const Buckets buckets(
       mesh->positions.size(), triangles.size(),
@@ -367,10 +366,10 @@ std::size_t drop_duplicates(WorkMesh* mesh, const Progress& progress, int thread
           put(static_cast<std::size_t>(sorted(triangles[t])[0]), t);
         }
       },
-      progress.part(0.0, 0.6), threads);
+      run.part(0.0, 0.6));
   std::vector<std::uint8_t> is_kept(triangles.size(), 0);
-  parallel_ranges(static_cast<std::int64_t>(buckets.size()), kSlotsPerTask, threads,
-                  progress.part(0.6, 0.9), [&](std::int64_t begin, std::int64_t end) {
+  parallel_ranges(static_cast<std::int64_t>(buckets.size()), kSlotsPerTask, run.part(0.6, 0.9),
+                  [&](std::int64_t begin, std::int64_t end) {
                     std::vector<Face> faces;
                     for (auto b = static_cast<std::size_t>(begin);
                          b < static_cast<std::size_t>(end); ++b) {
@@ -389,7 +388,7 @@ std::size_t drop_duplicates(WorkMesh* mesh, const Progress& progress, int thread
   }
   triangles.resize(count);
   mesh->origins.resize(count);
-  progress.report(1.0);
+  run.report(1.0);
   return duplicates;
 }
 

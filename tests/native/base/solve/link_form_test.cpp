@@ -51,7 +51,7 @@ TEST(LinkForm, IsTheMatrixOfTheSumOfSquares) {
   std::mt19937 random(3);
   for (const int count : {2, 5, 40}) {
     const std::vector<TexelLink> links = random_links(&random, count);
-    const LinkForm form(links, is_part, Progress());
+    const LinkForm form(links, is_part, prefilter::Run());
     std::vector<double> expected = dense(links);
     std::vector<double> found(kTexels * kTexels, 0.0);
     ASSERT_FALSE(form.texels().empty());
@@ -93,7 +93,7 @@ TEST(LinkForm, IsEmptyWithoutLinks) {
   link.texels[0] = 5;
   link.shares[0] = 1.0F;
   link.weight = 1.0F;
-  EXPECT_TRUE(LinkForm({link}, is_part, Progress()).empty());
+  EXPECT_TRUE(LinkForm({link}, is_part, prefilter::Run()).empty());
 }
 
 }  // namespace

@@ -108,7 +108,6 @@ SolveOptions exact() {
   for (ValueRange& range : options.ranges) range = {-kInfinity, kInfinity};
   options.tolerance = 1e-7;
   options.max_sweeps = 2000;
-  options.threads = 1;
   return options;
 }
 
@@ -124,7 +123,7 @@ TEST(NinePointSystem, SolvesWhatIsAssembled) {
       Both both = random_system(width, height, wrap, ++seed);
       const auto expected = both.dense.solution();
       both.system.invert_diagonal();
-      both.system.solve(exact(), Progress());
+      both.system.solve(exact(), prefilter::Run());
       for (int i = 0; i < width * height; ++i) {
         const auto& texel = both.system.texel(both.system.at(i % width, i / width));
         for (int c = 0; c < kMaxChannels; ++c) {
@@ -202,7 +201,7 @@ TEST(NinePointSystem, RespectsRanges) {
     options.ranges = {{{0.3F, 0.5F}, {0.4F, 0.45F}, {0.0F, 0.5F}, {0.2F, 0.5F}}};
     options.ranges_times_alpha = times_alpha;
     both.system.invert_diagonal();
-    both.system.solve(options, Progress());
+    both.system.solve(options, prefilter::Run());
     expect_optimal(both, options, 6, 5);
   }
 }
@@ -224,12 +223,12 @@ TEST(NinePointSystem, LinksCountByTheirWeight) {
     }
     const auto expected = both.dense.solution();
     const LinkForm form(
-        {across}, [](std::ptrdiff_t) { return true; }, Progress());
+        {across}, [](std::ptrdiff_t) { return true; }, prefilter::Run());
     both.system.invert_diagonal();
     // An earlier weight has no effect.
     both.system.weigh_links(&form, Lanes{} + 9.0F);
     both.system.weigh_links(&form, Lanes{} + weight);
-    both.system.solve(exact(), Progress());
+    both.system.solve(exact(), prefilter::Run());
     for (int i = 0; i < 20; ++i) {
       const auto& texel = both.system.texel(both.system.at(i % 5, i / 5));
       for (int c = 0; c < kMaxChannels; ++c) EXPECT_NEAR(texel.v[c], expected[i][c], 3e-5) << i;

@@ -45,7 +45,7 @@ TEST(SparseFactors, SolveRandomSystems) {
         for (std::size_t a = 0; a < 3; ++a) values[i][a] += matrix[i][j] * expected[j][a];
       }
     }
-    const SparseFactors factors(lower, places, Progress());
+    const SparseFactors factors(lower, places, prefilter::Run());
     ASSERT_TRUE(factors.is_definite());
     factors.solve(values);
     for (std::size_t i = 0; i < size; ++i) {
@@ -68,7 +68,7 @@ TEST(SparseFactors, SolveALaplacian) {
       if (y > 0) lower.push_back({at, at - kSide, -1.0});
     }
   }
-  const SparseFactors factors(lower, places, Progress());
+  const SparseFactors factors(lower, places, prefilter::Run());
   ASSERT_TRUE(factors.is_definite());
   const double step = std::acos(-1.0) / (kSide + 1);
   std::vector<Vector3> values;

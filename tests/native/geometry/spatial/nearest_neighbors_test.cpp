@@ -27,7 +27,7 @@ double square(const Vector3& a, const Vector3& b) { return dot(a - b, a - b); }
 
 // Compares with a search through all distinct positions.
 void expect_nearest(const std::vector<Vector3>& points, std::size_t count) {
-  const NeighborSearch search(points, Progress(), 1);
+  const NeighborSearch search(points, prefilter::Run(1));
   const std::set<Vector3> distinct(points.begin(), points.end());
   ASSERT_EQ(search.positions().size(), distinct.size());
   Neighbors found;
@@ -72,7 +72,7 @@ TEST(NeighborSearch, MergesCopies) {
   for (int i = 0; i < 400; ++i) points.push_back(points[static_cast<std::size_t>(i * 7 % 40)]);
   points.push_back({0.0, 0.0, 0.0});
   points.push_back({-0.0, 0.0, -0.0});
-  const NeighborSearch search(points, Progress(), 2);
+  const NeighborSearch search(points, prefilter::Run(2));
   EXPECT_EQ(search.positions().size(), 41U);
   EXPECT_EQ(search.places()[440], search.places()[441]);
   // Different points with the same key, because a distant point makes the curve coarse.
@@ -86,7 +86,7 @@ TEST(NeighborSearch, ManyCopiesAreFast) {
   std::vector<Vector3> points(300000, Vector3{1.0, 2.0, 3.0});
   for (std::size_t i = 0; i < points.size(); i += 2) points[i][0] = 1.0 + 1e-12;
   points.push_back({9.0, 9.0, 9.0});
-  const NeighborSearch search(points, Progress(), 2);
+  const NeighborSearch search(points, prefilter::Run(2));
   EXPECT_EQ(search.positions().size(), 3U);
 }
 
@@ -95,14 +95,14 @@ TEST(NeighborSearch, LeavesOutNonfinitePoints) {
   points[3][1] = NAN;
   points[5][2] = INFINITY;
   points[7][0] = -1e200;
-  const NeighborSearch search(points, Progress(), 1);
+  const NeighborSearch search(points, prefilter::Run(1));
   EXPECT_EQ(search.positions().size(), 7U);
   for (const std::size_t i : {3U, 5U, 7U}) {
     EXPECT_EQ(search.places()[i], NeighborSearch::kNowhere);
   }
   const std::vector<Vector3> none(3, Vector3{NAN, 0.0, 0.0});
-  EXPECT_TRUE(NeighborSearch(none, Progress(), 1).positions().empty());
-  EXPECT_TRUE(NeighborSearch({}, Progress(), 1).positions().empty());
+  EXPECT_TRUE(NeighborSearch(none, prefilter::Run(1)).positions().empty());
+  EXPECT_TRUE(NeighborSearch({}, prefilter::Run(1)).positions().empty());
 }
 
 TEST(NeighborSearch, TakesLargeAndSmallNumbers) {

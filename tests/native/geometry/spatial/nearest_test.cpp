@@ -86,7 +86,7 @@ TEST(NearestPoints, AgreeWithASearchOverAllTriangles) {
     const Soup soup = random_soup(1, 40, size);
     const Soup asked = random_soup(2, 20, 0.5);
     const std::vector<SurfacePoint> found =
-        nearest_points(asked.positions, soup.view(), Progress(), 1);
+        nearest_points(asked.positions, soup.view(), prefilter::Run(1));
     for (std::size_t i = 0; i < found.size(); ++i) {
       double least = 1e300;
       for (const Triangle& t : soup.triangles) {
@@ -105,10 +105,10 @@ TEST(NearestPoints, AgreeWithASearchOverAllTriangles) {
 TEST(NearestPoints, AreTheSameForAnyThreadsAndOrder) {
   const Soup soup = random_soup(3, 5000, 0.05);
   Soup asked = random_soup(4, 4000, 0.5);
-  const auto one = nearest_points(asked.positions, soup.view(), Progress(), 1);
-  const auto two = nearest_points(asked.positions, soup.view(), Progress(), 2);
+  const auto one = nearest_points(asked.positions, soup.view(), prefilter::Run(1));
+  const auto two = nearest_points(asked.positions, soup.view(), prefilter::Run(2));
   std::reverse(asked.positions.begin(), asked.positions.end());
-  auto reversed = nearest_points(asked.positions, soup.view(), Progress(), 2);
+  auto reversed = nearest_points(asked.positions, soup.view(), prefilter::Run(2));
   std::reverse(reversed.begin(), reversed.end());
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].triangle, two[i].triangle);
@@ -120,7 +120,7 @@ TEST(NearestPoints, TakeSegmentsAndPointsForTriangles) {
   const std::vector<Vector3> positions = {{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {9, 9, 9}};
   const std::vector<Vector3> points = {{3, 1, 0}, {8, 9, 9}, {-1, 0, 0}};
   const std::vector<Triangle> triangles = {{0, 1, 2}, {3, 3, 3}, {2, 0, 0}};
-  const auto found = nearest_points(points, {positions, triangles}, Progress(), 1);
+  const auto found = nearest_points(points, {positions, triangles}, prefilter::Run(1));
   EXPECT_NEAR(found[0].distance, 1.0, 1e-12);
   EXPECT_NEAR(found[1].distance, 1.0, 1e-12);
   EXPECT_NEAR(found[2].distance, 1.0, 1e-12);
@@ -129,15 +129,15 @@ TEST(NearestPoints, TakeSegmentsAndPointsForTriangles) {
 TEST(NearestPoints, TreesAreReusable) {
   Soup soup = random_soup(5, 300, 0.2);
   const Soup asked = random_soup(6, 50, 0.5);
-  const auto wanted = nearest_points(asked.positions, soup.view(), Progress(), 1);
-  const NearestPoints tree(soup.view(), Progress(), 1);
+  const auto wanted = nearest_points(asked.positions, soup.view(), prefilter::Run(1));
+  const NearestPoints tree(soup.view(), prefilter::Run(1));
   soup = Soup();  // the tree has a copy
   for (std::size_t i = 0; i < asked.positions.size(); ++i) {
-    const auto found = tree.find(std::span(asked.positions).subspan(i, 1), Progress(), 1);
+    const auto found = tree.find(std::span(asked.positions).subspan(i, 1), prefilter::Run(1));
     EXPECT_EQ(found[0].triangle, wanted[i].triangle);
     EXPECT_EQ(found[0].weights, wanted[i].weights);
   }
-  EXPECT_TRUE(tree.find({}, Progress(), 1).empty());
+  EXPECT_TRUE(tree.find({}, prefilter::Run(1)).empty());
 }
 
 // The lowest index among triangles at the same distance, compared with a linear search.
@@ -157,12 +157,12 @@ TEST(NearestPoints, HaveTheLowestIndexOfSeveral) {
     const Vector3& vertex = soup.positions[v];
     std::int64_t lowest = -1;
     for (std::size_t t = soup.triangles.size(); t-- > 0;) {
-      const auto one =
-          nearest_points(std::span(&vertex, 1),
-                         {soup.positions, std::span(soup.triangles).subspan(t, 1)}, Progress(), 1);
+      const auto one = nearest_points(std::span(&vertex, 1),
+                                      {soup.positions, std::span(soup.triangles).subspan(t, 1)},
+                                      prefilter::Run(1));
       if (one[0].distance == 0.0) lowest = static_cast<std::int64_t>(t);
     }
-    const auto found = nearest_points(std::span(&vertex, 1), soup.view(), Progress(), 1);
+    const auto found = nearest_points(std::span(&vertex, 1), soup.view(), prefilter::Run(1));
     EXPECT_EQ(found[0].triangle, lowest);
   }
 }
@@ -178,7 +178,7 @@ TEST(NearestPoints, CoincidentTrianglesAreFast) {
   }
   const Soup asked = random_soup(9, 20000, 0.5);
   const std::clock_t began = std::clock();
-  const auto found = nearest_points(asked.positions, soup.view(), Progress(), 1);
+  const auto found = nearest_points(asked.positions, soup.view(), prefilter::Run(1));
   EXPECT_LT(std::clock() - began, 20 * CLOCKS_PER_SEC);
   for (const SurfacePoint& point : found) EXPECT_LE(point.triangle, 1);
 }
@@ -203,9 +203,9 @@ TEST(NearestPoints, AreTheSameInStacksAndFans) {
   }
   Soup asked = random_soup(11, 150, 0.5);
   for (Vector3& p : asked.positions) p[2] += 1.0;
-  const auto wanted = nearest_points(asked.positions, soup.view(), Progress(), 1);
+  const auto wanted = nearest_points(asked.positions, soup.view(), prefilter::Run(1));
   std::reverse(asked.positions.begin(), asked.positions.end());
-  auto found = nearest_points(asked.positions, soup.view(), Progress(), 2);
+  auto found = nearest_points(asked.positions, soup.view(), prefilter::Run(2));
   std::reverse(found.begin(), found.end());
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     EXPECT_EQ(found[i].triangle, wanted[i].triangle);

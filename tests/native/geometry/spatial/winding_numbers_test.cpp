@@ -27,7 +27,7 @@ Triangles triangles_of(const testing::Mesh& mesh) {
 TEST(WindingNumbers, OfASphere) {
   const testing::Mesh mesh = testing::sphere_mesh({0.5, 0.5, 0.5}, 0.4, 60);
   const Triangles triangles = triangles_of(mesh);
-  const WindingNumbers winding({mesh.positions, triangles}, Progress(), 2);
+  const WindingNumbers winding({mesh.positions, triangles}, prefilter::Run(2));
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (int i = 0; i < 500; ++i) {
@@ -48,7 +48,7 @@ TEST(WindingNumbers, ExcessIsTheDifference) {
     triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
   mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
-  const WindingNumbers winding({mesh.positions, triangles}, Progress(), 2);
+  const WindingNumbers winding({mesh.positions, triangles}, prefilter::Run(2));
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   int sure = 0;
@@ -75,7 +75,7 @@ TEST(WindingNumbers, OfAnOpenBox) {
   const testing::Mesh mesh = testing::box_mesh({0, 0, 0}, {1, 1, 1});
   Triangles triangles = triangles_of(mesh);
   triangles.resize(10);
-  const WindingNumbers winding({mesh.positions, triangles}, Progress(), 1);
+  const WindingNumbers winding({mesh.positions, triangles}, prefilter::Run(1));
   EXPECT_NEAR(winding.at({0.5, 0.5, 0.5}), 5.0 / 6.0, 1e-12);
   // At the center of the missing side, it lies in the point's plane.
   EXPECT_NEAR(winding.at({1.0, 0.5, 0.5}), 0.5, 1e-12);
@@ -108,7 +108,7 @@ TEST(WindingNumbers, OpenMeshesAreTheSumOfSolidAngles) {
   for (Vector3& p : mesh.positions) p[2] *= p[0] < 0.5 ? 0.3 : 1.0;  // no longer round
   Triangles triangles = triangles_of(mesh);
   triangles.resize(triangles.size() / 3);
-  const WindingNumbers winding({mesh.positions, triangles}, Progress(), 1);
+  const WindingNumbers winding({mesh.positions, triangles}, prefilter::Run(1));
   for (int i = 0; i < 300; ++i) {
     const Vector3 point = {uniform(random), uniform(random), uniform(random)};
     EXPECT_NEAR(winding.at(point), sum_of_solid_angles(mesh, triangles, point), 0.01);
@@ -118,11 +118,11 @@ TEST(WindingNumbers, OpenMeshesAreTheSumOfSolidAngles) {
 TEST(WindingNumbers, ThreadsAndErrors) {
   const testing::Mesh mesh = testing::sphere_mesh({0.5, 0.5, 0.5}, 0.4, 20);
   const Triangles triangles = triangles_of(mesh);
-  const WindingNumbers winding({mesh.positions, triangles}, Progress(), 1);
+  const WindingNumbers winding({mesh.positions, triangles}, prefilter::Run(1));
   const std::vector<Vector3> points(3000, Vector3{0.3, 0.4, 0.5});
-  EXPECT_EQ(winding.find(points, Progress(), 1), winding.find(points, Progress(), 3));
+  EXPECT_EQ(winding.find(points, prefilter::Run(1)), winding.find(points, prefilter::Run(3)));
   const std::vector<Vector3> bad = {{0.0, std::numeric_limits<double>::quiet_NaN(), 0.0}};
-  EXPECT_THROW(winding.find(bad, Progress(), 1), Error);
+  EXPECT_THROW(winding.find(bad, prefilter::Run(1)), Error);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace prefilter {
 namespace {
 
 TexelTriangles map(const Surface& surface, Wrap u, Wrap v) {
-  return map_to_texels({&surface}, 8, 4, {u, v}, MassOf::kArea, Progress(), 0);
+  return map_to_texels({&surface}, 8, 4, {u, v}, MassOf::kArea, prefilter::Run(0));
 }
 
 TEST(MapToTexels, KeepsTheMassUnlessABorderDropsIt) {
@@ -55,14 +55,14 @@ TEST(MapToTexels, PutsWholeTilesIntoTheUniformPart) {
 TEST(MapToTexels, RepeatAddsUpToTheSameCoverageAsShiftedTriangles) {
   const Surface moved = testing::one_triangle({{{3.1, -4.9}, {3.9, -4.8}, {3.4, -4.1}}});
   const Surface home = testing::one_triangle({{{0.1, 0.1}, {0.9, 0.2}, {0.4, 0.9}}});
-  const auto expected = texel_masses(map(home, Wrap::kRepeat, Wrap::kRepeat), Progress(), 1);
-  const auto found = texel_masses(map(moved, Wrap::kRepeat, Wrap::kRepeat), Progress(), 1);
+  const auto expected = texel_masses(map(home, Wrap::kRepeat, Wrap::kRepeat), prefilter::Run(1));
+  const auto found = texel_masses(map(moved, Wrap::kRepeat, Wrap::kRepeat), prefilter::Run(1));
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-5);
 }
 
 TEST(MapToTexels, ClampsToTheEdgeTexels) {
   const Surface outside = testing::one_triangle({{{2, 0.1}, {3, 0.2}, {2.5, 0.2}}});
-  const auto masses = texel_masses(map(outside, Wrap::kClamp, Wrap::kClamp), Progress(), 1);
+  const auto masses = texel_masses(map(outside, Wrap::kClamp, Wrap::kClamp), prefilter::Run(1));
   EXPECT_NEAR(masses[7], 32.0F, 1e-4);
 }
 
@@ -78,7 +78,7 @@ TEST(MapToTexels, RefusesTooManyTiles) {
 
 TEST(Coverage, KnowsTouchedTexelsWithoutArea) {
   const Surface flat = testing::one_triangle({{{0.1, 0.1}, {0.4, 0.1}, {0.2, 0.1}}}, 0.0);
-  const std::vector<unsigned char> touched = touched_texels({&flat}, 8, 4, {}, Progress(), 1);
+  const std::vector<unsigned char> touched = touched_texels({&flat}, 8, 4, {}, prefilter::Run(1));
   const std::vector<unsigned char> expected{1, 1, 1, 1, 0, 0, 0, 0};
   for (std::size_t i = 0; i < touched.size(); ++i) {
     EXPECT_EQ(touched[i], i < 8 ? expected[i] : 0) << i;
@@ -89,7 +89,7 @@ TEST(Coverage, LooksUpTheTexelsAround) {
   // Inside the upper right half of texel (2, 1), where lookups read columns 2 and 3, rows 1 and 2.
   const Surface small =
       testing::one_triangle({{{2.6 / 8, 1.6 / 4}, {2.9 / 8, 1.6 / 4}, {2.7 / 8, 1.9 / 4}}});
-  const std::vector<unsigned char> read = looked_up_texels({&small}, 8, 4, {}, Progress(), 1);
+  const std::vector<unsigned char> read = looked_up_texels({&small}, 8, 4, {}, prefilter::Run(1));
   for (int y = 0; y < 4; ++y) {
     for (int x = 0; x < 8; ++x) {
       const bool expected = (x == 2 || x == 3) && (y == 1 || y == 2);

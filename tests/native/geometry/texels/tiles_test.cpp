@@ -53,7 +53,7 @@ TEST(Tiles, HaveTheTrianglesThatMeetThem) {
     }
     triangles.triangles.push_back(triangle);
   }
-  const Tiles tiles(triangles, Progress(), 3);
+  const Tiles tiles(triangles, prefilter::Run(3));
   ASSERT_EQ(tiles.count(), 4 * 3);
   for (std::int64_t tile = 0; tile < tiles.count(); ++tile) {
     const auto [x0, y0, x1, y1] = tiles.window(tile);
@@ -74,7 +74,7 @@ TEST(Tiles, HaveTheTrianglesThatMeetThem) {
   }
   std::mutex mutex;
   std::vector<std::int64_t> visited;
-  tiles.for_each_apart(3, Progress(), [&](std::int64_t tile) {
+  tiles.for_each_apart(prefilter::Run(3), [&](std::int64_t tile) {
     const std::lock_guard lock(mutex);
     visited.push_back(tile);
   });

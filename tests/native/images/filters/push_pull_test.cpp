@@ -18,7 +18,7 @@ TEST(FillHoles, KeepsTexelsWithWeightAndFillsTheRest) {
       image.texel(0, height / 2)[0] = 0.25F;
       image.texel(0, height / 2)[1] = -4.0F;
       weights[static_cast<std::size_t>(height / 2) * width] = 0.001F;
-      fill_holes(weights, {}, 2, Progress(), 2, &image);
+      fill_holes(weights, {}, 2, prefilter::Run(2), &image);
       for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
           EXPECT_NEAR(image.texel(x, y)[0], 0.25F, 1e-6);
@@ -41,7 +41,7 @@ TEST(FillHoles, InterpolatesTheCoarserLayer) {
       weights[static_cast<std::size_t>(8 * j + 2 * i)] = 1.0F;
     }
   }
-  fill_holes(weights, {}, 1, Progress(), 1, &image);
+  fill_holes(weights, {}, 1, prefilter::Run(1), &image);
   const auto between = [&](int x, int y) {
     const double u = std::min(std::max(0.5 * (x + 0.5) - 0.5, 0.0), 1.0);
     const double v = std::min(std::max(0.5 * (y + 0.5) - 0.5, 0.0), 1.0);
@@ -64,7 +64,7 @@ TEST(FillHoles, StaysBetweenTheValuesAround) {
     image.texel(15, y)[0] = 3.0F;
     weights[16 * y] = weights[16 * y + 15] = 1.0F;
   }
-  fill_holes(weights, {}, 1, Progress(), 2, &image);
+  fill_holes(weights, {}, 1, prefilter::Run(2), &image);
   for (int x = 1; x < 16; ++x) {
     EXPECT_GE(image.texel(x, 8)[0], image.texel(x - 1, 8)[0]);
     EXPECT_LE(image.texel(x, 8)[0], 3.0F);
@@ -79,7 +79,7 @@ TEST(FillHoles, FullQuartersCountLikeSingleTexels) {
     image.data[static_cast<std::size_t>(at)] = 1.0F;
     weights[static_cast<std::size_t>(at)] = 1.0F;
   }
-  fill_holes(weights, {}, 1, Progress(), 1, &image);
+  fill_holes(weights, {}, 1, prefilter::Run(1), &image);
   // The last quarter has no texel: it gets the mean of the other quarters.
   EXPECT_NEAR(image.texel(3, 3)[0], 0.5F, 1e-6);
 }
@@ -88,7 +88,7 @@ TEST(FillHoles, ReadsAcrossTheEdgesOfARepeatedImage) {
   for (const Wrap mode : {Wrap::kRepeat, Wrap::kClamp}) {
     Image image(4, 1, 1);
     image.texel(3, 0)[0] = 1.0F;
-    fill_holes({0.0F, 1.0F, 0.0F, 1.0F}, {mode, mode}, 1, Progress(), 1, &image);
+    fill_holes({0.0F, 1.0F, 0.0F, 1.0F}, {mode, mode}, 1, prefilter::Run(1), &image);
     // The first texel is a quarter of a coarse one from the edge, beyond which is the last one.
     EXPECT_EQ(image.texel(0, 0)[0], mode == Wrap::kRepeat ? 0.25F : 0.0F);
   }
@@ -96,7 +96,7 @@ TEST(FillHoles, ReadsAcrossTheEdgesOfARepeatedImage) {
 
 TEST(FillHoles, LeavesAnImageWithoutAnyWeight) {
   Image image(4, 4, 1, 7.0F);
-  fill_holes(std::vector<float>(16, 0.0F), {}, 1, Progress(), 1, &image);
+  fill_holes(std::vector<float>(16, 0.0F), {}, 1, prefilter::Run(1), &image);
   for (const float value : image.data) EXPECT_EQ(value, 7.0F);
 }
 
@@ -105,7 +105,7 @@ TEST(FillHoles, LeavesFurtherChannels) {
   std::vector<float> weights(16, 0.0F);
   weights[0] = 1.0F;
   image.texel(0, 0)[0] = 1.0F;
-  fill_holes(weights, {}, 1, Progress(), 2, &image);
+  fill_holes(weights, {}, 1, prefilter::Run(2), &image);
   EXPECT_EQ(image.texel(3, 3)[0], 1.0F);
   EXPECT_EQ(image.texel(3, 3)[1], 5.0F);
 }

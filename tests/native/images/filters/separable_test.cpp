@@ -63,7 +63,7 @@ TEST(FilterSeparably, MatchesItsDefinition) {
       for (const auto& [width, height] : {std::pair{6, 4}, std::pair{4, 1}, std::pair{12, 2},
                                           std::pair{7, 5}, std::pair{31, 16}, std::pair{24, 3}}) {
         const Image target =
-            filter_separably(source.view(), width, height, kernel, wrap, Progress(), 2);
+            filter_separably(source.view(), width, height, kernel, wrap, prefilter::Run(2));
         ASSERT_EQ(target.width, width);
         ASSERT_EQ(target.height, height);
         for (int y = 0; y < height; ++y) {
@@ -86,7 +86,7 @@ TEST(FilterSeparably, IsTheSameForAnyNumberOfThreads) {
   for (int channels = 1; channels <= kMaxChannels; ++channels) {
     const Image source = random_image(1100, 37, channels);
     const auto filter = [&](int threads) {
-      return filter_separably(source.view(), 733, 51, kernel, {}, Progress(), threads).data;
+      return filter_separably(source.view(), 733, 51, kernel, {}, prefilter::Run(threads)).data;
     };
     const std::vector<float> one = filter(1);
     EXPECT_EQ(one, filter(2));
@@ -100,7 +100,7 @@ TEST(FilterSeparably, KeepsConstantsToTheLastBit) {
   for (const Kernel& kernel : kernels()) {
     for (const auto& [width, height] : {std::pair{5, 3}, std::pair{40, 1}, std::pair{29, 31}}) {
       const Image target = filter_separably(source.view(), width, height, kernel,
-                                            {Wrap::kClamp, Wrap::kRepeat}, Progress(), 1);
+                                            {Wrap::kClamp, Wrap::kRepeat}, prefilter::Run(1));
       EXPECT_TRUE(std::all_of(target.data.begin(), target.data.end(), [](float value) {
         return value == kValue;
       })) << kernel.name();

@@ -38,8 +38,8 @@ TEST(BilinearFit, ResidualIsOrthogonalToTheTents) {
       solve.max_sweeps = 5000;
       constexpr float kInfinity = std::numeric_limits<float>::infinity();
       for (ValueRange& range : solve.ranges) range = {-kInfinity, kInfinity};
-      const Image fit =
-          fit_bilinearly(source.view(), width, height, {wrap, wrap}, solve, nullptr, Progress());
+      const Image fit = fit_bilinearly(source.view(), width, height, {wrap, wrap}, solve, nullptr,
+                                       prefilter::Run());
       std::vector<double> left(static_cast<std::size_t>(width) * height);
       // Centers between all lines of both grids: 11 * 12 * 5 * 2 and 7 * 9 * 4 * 2 steps.
       constexpr int kColumns = 1320;

@@ -27,7 +27,7 @@ Image resized(const Image& image, int width, int height, const std::string& filt
   ResizeOptions options;
   options.filter = resize_filter(filter);
   options.wrap = {Wrap::kRepeat, Wrap::kClamp};
-  options.threads = threads;
+  options.run = prefilter::Run(threads);
   return resize(image.view(), width, height, options);
 }
 

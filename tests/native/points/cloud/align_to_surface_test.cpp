@@ -153,7 +153,7 @@ TEST(AlignToSurface, Refuses) {
   EXPECT_THROW(align_to_surface(scans, none, mesh, {}), Error);
   EXPECT_THROW(align_to_surface(scans, std::span(none, 1), {}, {}), Error);
   AlignOptions options;
-  options.progress = Progress([](double) { return false; });
+  options.run = prefilter::Run([](double) { return false; });
   EXPECT_THROW(align_to_surface(scans, std::span(none, 1), mesh, options), Error);
 }
 

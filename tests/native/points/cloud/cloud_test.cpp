@@ -50,7 +50,7 @@ TEST(Subsample, PoissonDisksAreApartAndCover) {
   points.push_back({std::nan(""), 0.0, 0.0});
   points.push_back(points[0]);
   const std::vector<std::int64_t> kept =
-      subsample(points, 0.3, Subsampling::kPoisson, Progress(), 2);
+      subsample(points, 0.3, Subsampling::kPoisson, prefilter::Run(2));
   for (std::int64_t i = 0; i < 600; ++i) {
     const bool is_kept = std::find(kept.begin(), kept.end(), i) != kept.end();
     const double square = nearest_square(points, kept, i);
@@ -61,19 +61,19 @@ TEST(Subsample, PoissonDisksAreApartAndCover) {
 
 TEST(Subsample, GridsHaveOnePointInEachCell) {
   const std::vector<Vector3> points = {{0, 0, 0}, {0.4, 0, 0}, {0.9, 0, 0}, {1.5, 0, 0}};
-  EXPECT_EQ(subsample(points, 1.0, Subsampling::kGrid, Progress(), 1),
+  EXPECT_EQ(subsample(points, 1.0, Subsampling::kGrid, prefilter::Run(1)),
             (std::vector<std::int64_t>{1, 3}));
-  EXPECT_THROW(subsample(points, 0.0, Subsampling::kGrid, Progress(), 1), Error);
-  EXPECT_TRUE(subsample({}, 1.0, Subsampling::kGrid, Progress(), 1).empty());
+  EXPECT_THROW(subsample(points, 0.0, Subsampling::kGrid, prefilter::Run(1)), Error);
+  EXPECT_TRUE(subsample({}, 1.0, Subsampling::kGrid, prefilter::Run(1)).empty());
 }
 
 TEST(FindOutliers, FindsIsolatedPoints) {
   std::vector<Vector3> points = ellipsoid(2000, 2);
   points.push_back({3.0, 0.0, 0.0});
-  const std::vector<bool> found = find_outliers(points, 16, 2.5, Progress(), 2);
+  const std::vector<bool> found = find_outliers(points, 16, 2.5, prefilter::Run(2));
   EXPECT_TRUE(found[2000]);
   EXPECT_EQ(std::count(found.begin(), found.end(), true), 1);
-  EXPECT_THROW(find_outliers(points, 2, 2.0, Progress(), 1), Error);
+  EXPECT_THROW(find_outliers(points, 2, 2.0, prefilter::Run(1)), Error);
 }
 
 TEST(AlignScans, UndoesASmallMotion) {

@@ -182,7 +182,7 @@ TEST(PaintTexture, Refuses) {
   EXPECT_THROW(paint(), Error);
   options.reach = std::nullopt;
   EXPECT_THROW(paint_texture(square(0.0, 1.0), points.places, points.values, 2, options), Error);
-  options.progress = Progress([](double) { return false; });
+  options.run = prefilter::Run([](double) { return false; });
   EXPECT_THROW(paint(), Error);
 }
 

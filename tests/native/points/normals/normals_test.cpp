@@ -29,22 +29,23 @@ std::vector<Vector3> sphere(unsigned seed, std::size_t count) {
 TEST(EstimateNormals, OfASpherePointOutward) {
   const std::vector<Vector3> points = sphere(1, 5000);
   const std::vector<Vector3> normals =
-      estimate_normals(points, 16, {}, NormalSide::kOutward, Progress(), 2);
+      estimate_normals(points, 16, {}, NormalSide::kOutward, prefilter::Run(2));
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_GT(dot(points[i], normals[i]), 0.98);
-  EXPECT_EQ(estimate_normals(points, 16, {}, NormalSide::kOutward, Progress(), 1), normals);
+  EXPECT_EQ(estimate_normals(points, 16, {}, NormalSide::kOutward, prefilter::Run(1)), normals);
 }
 
 TEST(EstimateNormals, PointToTheViewpoint) {
   const std::vector<Vector3> points = sphere(2, 2000);
   const std::vector<Vector3> inside = {{0.2, 0.1, -0.1}};
   const std::vector<Vector3> normals =
-      estimate_normals(points, 16, inside, NormalSide::kOutward, Progress(), 2);
+      estimate_normals(points, 16, inside, NormalSide::kOutward, prefilter::Run(2));
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT(dot(points[i], normals[i]), -0.95);
 }
 
 TEST(EstimateNormals, PointUp) {
   const std::vector<Vector3> points = sphere(4, 5000);
-  const std::vector<Vector3> normals = estimate_normals(points, 16, {}, NormalSide::kUp, {}, 2);
+  const std::vector<Vector3> normals =
+      estimate_normals(points, 16, {}, NormalSide::kUp, prefilter::Run(2));
   std::size_t level = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool is_level = std::abs(normals[i][2]) < 0.17;
@@ -56,11 +57,11 @@ TEST(EstimateNormals, PointUp) {
 
 TEST(HeightField, AcceptsSheetsAndRejectsSolids) {
   std::vector<Vector3> points = sphere(5, 4000);
-  EXPECT_FALSE(is_height_field(points, Progress()));
+  EXPECT_FALSE(is_height_field(points, prefilter::Run()));
   for (Vector3& p : points) p[2] = 0.3 * p[0] * p[1];
-  EXPECT_TRUE(is_height_field(points, Progress()));
+  EXPECT_TRUE(is_height_field(points, prefilter::Run()));
   points.resize(99);
-  EXPECT_FALSE(is_height_field(points, Progress()));
+  EXPECT_FALSE(is_height_field(points, prefilter::Run()));
 }
 
 TEST(EstimateNormals, AcceptAnyPoints) {
@@ -71,7 +72,7 @@ TEST(EstimateNormals, AcceptAnyPoints) {
   points.push_back({1e-300, 0.0, 0.0});
   for (int i = 0; i < 100; ++i) points.push_back({5.0 + i, 0.0, 0.0});
   const std::vector<Vector3> normals =
-      estimate_normals(points, 1000, {}, NormalSide::kOutward, Progress(), 2);
+      estimate_normals(points, 1000, {}, NormalSide::kOutward, prefilter::Run(2));
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_NEAR(length(normals[i]), i == 600 ? 0.0 : 1.0, 1e-12);
   }
@@ -88,16 +89,16 @@ TEST(GridNormals, SkipDepthDiscontinuities) {
   }
   points[42][0] = NAN;
   grid.points[77] = -1;
-  const GridNormals found = grid_normals(points, grid, {}, Progress());
+  const GridNormals found = grid_normals(points, grid, {}, prefilter::Run());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool has_normal = i != 42 && i != 77;
     EXPECT_EQ(found.normals[i], (Vector3{0.0, 0.0, has_normal ? 1.0 : 0.0}));
     EXPECT_EQ(found.weights[i] > 0.0F, has_normal);
   }
   grid.points[3] = kSide * kSide;
-  EXPECT_THROW(grid_normals(points, grid, {}, Progress()), Error);
+  EXPECT_THROW(grid_normals(points, grid, {}, prefilter::Run()), Error);
   grid.points.pop_back();
-  EXPECT_THROW(grid_normals(points, grid, {}, Progress()), Error);
+  EXPECT_THROW(grid_normals(points, grid, {}, prefilter::Run()), Error);
 }
 
 }  // namespace

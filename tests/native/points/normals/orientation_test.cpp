@@ -40,7 +40,8 @@ struct Row {
       links.resize((i + 1) * degree, static_cast<std::uint32_t>(i));
     }
     std::vector<Vector3> result = normals;
-    orient_normals({positions, areas, degree, links}, NormalSide::kOutward, Progress(), 1, &result);
+    orient_normals({positions, areas, degree, links}, NormalSide::kOutward, prefilter::Run(1),
+                   &result);
     return result;
   }
 

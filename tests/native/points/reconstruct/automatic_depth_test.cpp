@@ -39,7 +39,7 @@ Box box_of(const std::vector<Vector3>& points) {
 }
 
 int depth_of(const std::vector<Vector3>& points) {
-  return automatic_depth(thinned(points), box_of(points), Progress(), 1);
+  return automatic_depth(thinned(points), box_of(points), prefilter::Run(1));
 }
 
 // Expected number of points per cell face if they are spread evenly.
@@ -81,7 +81,7 @@ TEST(AutomaticDepth, IsTheSameForAnyOrderCopiesAndThreads) {
   std::vector<Vector3> points = testing::sphere_cloud(20000).points;
   const int depth = depth_of(points);
   const Box box = box_of(points);
-  EXPECT_EQ(automatic_depth(thinned(points), box, Progress(), 7), depth);
+  EXPECT_EQ(automatic_depth(thinned(points), box, prefilter::Run(7)), depth);
   const std::vector<Vector3> once = points;
   for (int k = 0; k < 20; ++k) points.insert(points.end(), once.begin(), once.end());
   std::shuffle(points.begin(), points.end(), std::mt19937(3));
@@ -101,9 +101,9 @@ TEST(AutomaticDepth, IgnoresASmallDenserPart) {
 TEST(AutomaticDepth, IgnoresPointsOutsideTheBox) {
   std::vector<Vector3> points = testing::sphere_cloud(8000).points;
   const Box box = box_of(points);
-  const int depth = automatic_depth(thinned(points), box, Progress(), 1);
+  const int depth = automatic_depth(thinned(points), box, prefilter::Run(1));
   for (int k = 0; k < 6000; ++k) points.push_back({9.0, 9.0 + k, 9.0});
-  EXPECT_EQ(automatic_depth(thinned(points), box, Progress(), 1), depth);
+  EXPECT_EQ(automatic_depth(thinned(points), box, prefilter::Run(1)), depth);
 }
 
 TEST(AutomaticDepth, IsValidForAnyPoints) {

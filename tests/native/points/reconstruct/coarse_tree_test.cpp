@@ -19,16 +19,16 @@ constexpr int kTop = 4;
 TEST(CoarseTree, ExcludesOutliersAndReturnsTheirWeight) {
   testing::CloudStore store(testing::stray_cloud(), kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
-  compute_whole_samples(0, Progress(), 1, &slabs);
-  const double left_out = build_coarse_tree(Progress(), 1, &slabs);
+  compute_whole_samples(0, prefilter::Run(1), &slabs);
+  const double left_out = build_coarse_tree(prefilter::Run(1), &slabs);
   EXPECT_NEAR(left_out, 6.0, 1e-6);
 }
 
 TEST(CoarseTree, ContinuesInTheSlabs) {
   testing::CloudStore store(testing::sphere_cloud(20000), kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
-  compute_whole_samples(0, Progress(), 1, &slabs);
-  build_coarse_tree(Progress(), 1, &slabs);
+  compute_whole_samples(0, prefilter::Run(1), &slabs);
+  build_coarse_tree(prefilter::Run(1), &slabs);
   ASSERT_EQ(slabs.coarse.tree.levels.size(), static_cast<std::size_t>(kTop));
   // The split cells of all slabs in order along the curve, and the index of each within its slab.
   std::vector<std::uint64_t> places;
@@ -50,8 +50,8 @@ TEST(CoarseTree, IsNegativeForInwardNormals) {
   for (Vector3& normal : cloud.normals) normal = Vector3{} - normal;
   testing::CloudStore store(cloud, kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
-  compute_whole_samples(0, Progress(), 1, &slabs);
-  build_coarse_tree(Progress(), 1, &slabs);
+  compute_whole_samples(0, prefilter::Run(1), &slabs);
+  build_coarse_tree(prefilter::Run(1), &slabs);
   EXPECT_NEAR(slabs.coarse.root, -4.0 / 3.0 * 3.14159265 * 0.35 * 0.35 * 0.35, 0.005);
 }
 

@@ -56,7 +56,7 @@ class D4Trees : public ::testing::Test {
   D4Trees()
       : store_(testing::uneven_sphere_cloud(), kDepth, kDepth - kTop),
         slabs_(&store_, kDepth, kTop, 0, true, 1) {
-    compute_whole_samples(0, Progress(), 1, &slabs_);
+    compute_whole_samples(0, prefilter::Run(1), &slabs_);
     slabs_.advance_to(0, slabs_.count(), SlabStage::kLeaves);
     for (int s = 0; s < slabs_.count(); ++s) leaves_.push_back(find_slab_leaves(slabs_, s));
   }
@@ -159,7 +159,7 @@ TEST_F(D4Trees, AreasSumUpToTheSphere) {
 TEST(D4Leaves, ExcludeOutliers) {
   testing::CloudStore store(testing::stray_cloud(), kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
-  compute_whole_samples(0, Progress(), 1, &slabs);
+  compute_whole_samples(0, prefilter::Run(1), &slabs);
   slabs.advance_to(0, slabs.count(), SlabStage::kLeaves);
   double left_out = 0.0;
   for (int s = 0; s < slabs.count(); ++s) left_out += find_slab_leaves(slabs, s).left_out;

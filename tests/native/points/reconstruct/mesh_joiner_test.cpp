@@ -76,7 +76,7 @@ TEST(MeshJoiner, JoinedSlabsEqualTheWholeMesh) {
       ContourOptions options;
       options.interpolant = interpolant;
       options.clean_up = false;
-      options.threads = 1;
+      options.run = prefilter::Run(1);
       const TriangleMesh whole = contour_slab(tree, 0.5F, interpolant, {0, kSide + 1}).mesh;
       EXPECT_EQ(whole.triangles.size(), contour_tree(tree, kUnitCube, options).triangles.size());
       for (const int height : {1, 4, kSide / 2, kSide}) {

@@ -88,7 +88,7 @@ TEST(Reconstruct, ExcludesFarOutliers) {
       Cloud cloud = near;
       for (const Vector3& p : strays) add(p, &cloud);
       for (const int threads : {1, 3}) {
-        options.threads = threads;
+        options.run = prefilter::Run(threads);
         const Result found = surface_of(cloud, options);
         // Huge coordinates are counted separately.
         const std::size_t huge = strays[0][0] > 1e30 ? 1 : 0;
@@ -136,7 +136,7 @@ TEST(Reconstruct, BallIsClosedAndAccurate) {
         options.depth = depth;
         options.smooth = smooth;
         options.memory_limit = smooth ? std::numeric_limits<std::uint64_t>::max() : 0;
-        options.threads = smooth ? 1 : 2;
+        options.run = prefilter::Run(smooth ? 1 : 2);
         const Result result = surface_of(cloud, options);
         ASSERT_EQ(testing::fault_of(result.mesh), "");
         if (depth == 1) continue;
@@ -308,9 +308,9 @@ TEST(Reconstruct, CanBeStoppedAtAnyReport) {
     ReconstructOptions options;
     options.basis = basis;
     options.depth = 7;
-    options.threads = 1;
+    options.run = prefilter::Run(1);
     for (const double stop : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9}) {
-      options.progress = Progress([stop](double fraction) { return fraction <= stop; });
+      options.run = prefilter::Run([stop](double fraction) { return fraction <= stop; });
       EXPECT_THROW(surface_of(cloud, options), Error) << stop;
     }
   }

@@ -173,8 +173,8 @@ TEST(ScreenedSolve, IsOneHalfAtSamplesOfMisalignedScans) {
   for (std::size_t i = 0; i < cloud.points.size(); i += 2) cloud.points[i][0] += 0.8 / 64.0;
   testing::CloudStore store(cloud, kDepth, 3);
   Slabs slabs(&store, kDepth, kDepth - 3, 0, true, 1);
-  compute_whole_samples(0, Progress(), 1, &slabs);
-  build_coarse_tree(Progress(), 1, &slabs);
+  compute_whole_samples(0, prefilter::Run(1), &slabs);
+  build_coarse_tree(prefilter::Run(1), &slabs);
   const auto off_at_samples = [&](SlabStage stage) {
     slabs.advance_to(0, slabs.count(), stage);
     double sum = 0.0;

@@ -28,8 +28,8 @@ class Sphere {
       : cloud(std::move(points)),
         store(cloud, kDepth, kDepth - kTop),
         slabs(&store, kDepth, kTop, 0, true, 1) {
-    largest = compute_whole_samples(0, Progress(), 1, &slabs);
-    build_coarse_tree(Progress(), 1, &slabs);
+    largest = compute_whole_samples(0, prefilter::Run(1), &slabs);
+    build_coarse_tree(prefilter::Run(1), &slabs);
     slabs.advance_to(0, slabs.count(), SlabStage::kValues);
   }
 
@@ -118,7 +118,7 @@ TEST(SlabMesh, EstimatesTheNoiseOfSamples) {
   }
   testing::CloudStore store(cloud, kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
-  const int largest = compute_whole_samples(0, Progress(), 1, &slabs);
+  const int largest = compute_whole_samples(0, prefilter::Run(1), &slabs);
   EXPECT_NEAR(find_noise(largest, &slabs).distance, kNoise, 0.3 * kNoise);
 }
 
@@ -128,7 +128,7 @@ TEST(SlabMesh, IsThePartOfTheSurfaceInTheSlab) {
   options.depth = kDepth;
   options.watertight = true;
   const SurfaceSamples surface = {sphere.slabs, 0, find_noise(sphere.largest, &sphere.slabs)};
-  const SurfaceLevel level = find_surface_level(options, false, Progress(), &sphere.slabs);
+  const SurfaceLevel level = find_surface_level(options, false, prefilter::Run(), &sphere.slabs);
   std::size_t vertices = 0;
   for (int s = 0; s < sphere.slabs.count(); ++s) {
     const SlabMesh slab = mesh_of_slab(surface, options, level, s);

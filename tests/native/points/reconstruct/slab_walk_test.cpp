@@ -33,7 +33,7 @@ TEST(SlabWalk, VisitsAllInOrder) {
     std::vector<int> visits(kSlabs);
     std::vector<int> joined;
     for_slabs(
-        {SlabStage::kCrossedCells}, Progress(), threads, &slabs,
+        {SlabStage::kCrossedCells}, prefilter::Run(threads), &slabs,
         [&](int s) { ++visits[static_cast<std::size_t>(s)]; }, [&](int s) { joined.push_back(s); });
     std::vector<int> all;
     for (int s = 0; s < kSlabs; ++s) all.push_back(s);
@@ -48,14 +48,14 @@ TEST(SlabWalk, ComputesEachStageOnce) {
   for (const int threads : {1, 2, 3}) {
     testing::CloudStore store(cloud, kDepth, kSlabBits);
     Slabs slabs = slabs_of(&store, false);
-    compute_whole_samples(0, Progress(), threads, &slabs);
+    compute_whole_samples(0, prefilter::Run(threads), &slabs);
     std::size_t expected = kSlabs * stages_up_to(SlabStage::kCrossedCells);
     EXPECT_EQ(slabs.steps(), expected) << threads;
-    build_coarse_tree(Progress(), threads, &slabs);
+    build_coarse_tree(prefilter::Run(threads), &slabs);
     expected += kSlabs * stages_up_to(SlabStage::kCoefficients);
     EXPECT_EQ(slabs.steps(), expected) << threads;
     for_slabs(
-        {SlabStage::kValues, 1, true}, Progress(), threads, &slabs, [](int) {}, [](int) {});
+        {SlabStage::kValues, 1, true}, prefilter::Run(threads), &slabs, [](int) {}, [](int) {});
     expected += kSlabs * stages_up_to(SlabStage::kValues);
     EXPECT_EQ(slabs.steps(), expected) << threads;
   }
@@ -65,11 +65,11 @@ TEST(SlabWalk, FreesSlabsThatAreNoLongerNeeded) {
   const testing::TestCloud cloud = testing::sphere_cloud(5000);
   testing::CloudStore store(cloud, kDepth, kSlabBits);
   Slabs slabs = slabs_of(&store, false);
-  compute_whole_samples(0, Progress(), 1, &slabs);
-  build_coarse_tree(Progress(), 1, &slabs);
+  compute_whole_samples(0, prefilter::Run(1), &slabs);
+  build_coarse_tree(prefilter::Run(1), &slabs);
   const auto is_there = [&](int s) { return !slabs.samples(s)->levels.empty(); };
   for_slabs(
-      {SlabStage::kValues, 1, true}, Progress(), 1, &slabs, [](int) {},
+      {SlabStage::kValues, 1, true}, prefilter::Run(1), &slabs, [](int) {},
       [&](int s) {
         for (int t = std::max(s - 1, 0); t <= std::min(s + 1, kSlabs - 1); ++t) {
           EXPECT_TRUE(is_there(t)) << s << " " << t;
@@ -83,10 +83,10 @@ TEST(SlabWalk, KeepsAllSlabsOnRequest) {
   const testing::TestCloud cloud = testing::sphere_cloud(5000);
   testing::CloudStore store(cloud, kDepth, kSlabBits);
   Slabs slabs = slabs_of(&store, true);
-  compute_whole_samples(0, Progress(), 2, &slabs);
-  build_coarse_tree(Progress(), 2, &slabs);
+  compute_whole_samples(0, prefilter::Run(2), &slabs);
+  build_coarse_tree(prefilter::Run(2), &slabs);
   for_slabs(
-      {SlabStage::kValues, 1, true}, Progress(), 2, &slabs, [](int) {}, [](int) {});
+      {SlabStage::kValues, 1, true}, prefilter::Run(2), &slabs, [](int) {}, [](int) {});
   EXPECT_EQ(slabs.steps(), kSlabs * stages_up_to(SlabStage::kValues));
 }
 

@@ -26,7 +26,7 @@ class Leaves {
       : cloud(std::move(points)),
         store(cloud, kDepth, kDepth - kTop),
         slabs(&store, kDepth, kTop, 0, true, 1) {
-    compute_whole_samples(0, Progress(), 1, &slabs);
+    compute_whole_samples(0, prefilter::Run(1), &slabs);
     slabs.advance_to(0, slabs.count(), SlabStage::kLeaves);
   }
   // Distance from the nearest point, in finest cells.

@@ -70,7 +70,7 @@ Cut cut_square(Field field, int rows, const TrimOptions& options,
   }
   ArraySink sink;
   Cut cut;
-  cut.report = cutter.finish(Progress(), &sink);
+  cut.report = cutter.finish(prefilter::Run(), &sink);
   cut.is_spilled = cutter.is_spilled();
   cut.positions = sink.take_positions();
   cut.triangles = sink.take_triangles();

@@ -47,11 +47,11 @@ TEST(SurfaceLevel, CanBeSetByTheOptions) {
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
   ReconstructOptions options;
   options.isovalue = Isovalue::kHalf;
-  EXPECT_EQ(find_surface_level(options, true, Progress(), &slabs).scale, -1.0F);
-  EXPECT_EQ(find_surface_level(options, true, Progress(), &slabs).isovalue, 0.5F);
+  EXPECT_EQ(find_surface_level(options, true, prefilter::Run(), &slabs).scale, -1.0F);
+  EXPECT_EQ(find_surface_level(options, true, prefilter::Run(), &slabs).isovalue, 0.5F);
   options.isovalue = Isovalue::kGiven;
   options.given_isovalue = 0.3;
-  EXPECT_EQ(find_surface_level(options, false, Progress(), &slabs).isovalue, 0.3F);
+  EXPECT_EQ(find_surface_level(options, false, prefilter::Run(), &slabs).isovalue, 0.3F);
 }
 
 // The function is 1/2 at the samples, about 1 inside and 0 outside: the Haar functions of a
@@ -60,11 +60,11 @@ TEST(SurfaceLevel, IsOneHalfForASphere) {
   testing::CloudStore store(testing::sphere_cloud(20000), kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
   slabs.mean_weight = 1.0;
-  compute_whole_samples(0, Progress(), 1, &slabs);
-  EXPECT_EQ(build_coarse_tree(Progress(), 1, &slabs), 0.0);
+  compute_whole_samples(0, prefilter::Run(1), &slabs);
+  EXPECT_EQ(build_coarse_tree(prefilter::Run(1), &slabs), 0.0);
   EXPECT_NEAR(slabs.coarse.root, 4.0 / 3.0 * 3.14159265 * std::pow(0.35, 3.0), 0.005);
   ReconstructOptions options;
-  const SurfaceLevel level = find_surface_level(options, false, Progress(), &slabs);
+  const SurfaceLevel level = find_surface_level(options, false, prefilter::Run(), &slabs);
   EXPECT_EQ(level.isovalue, 0.5F);
   EXPECT_NEAR(level.scale, 1.0F, 0.05F);
   for (int s = 0; s < slabs.count(); ++s) {

@@ -71,10 +71,9 @@ void add_rows(const Square& square, int low, int high, MeshSink* sink) {
   sink->add_triangles(std::move(triangles));
 }
 
-Mesh simplified(const Square& square, int threads = 1, const Progress& progress = Progress()) {
+Mesh simplified(const Square& square, const prefilter::Run& run = prefilter::Run()) {
   ArraySink sink;
-  SurfaceSimplifier simplifier({square.tolerance, kWidth, square.has_support, threads, progress},
-                               &sink);
+  SurfaceSimplifier simplifier({square.tolerance, kWidth, square.has_support, run}, &sink);
   for (int low = 0; low < kSide; low += square.rows) {
     const int high = std::min(low + square.rows, kSide);
     add_rows(square, low, high, &simplifier);
@@ -105,7 +104,7 @@ double largest_distance(const Mesh& from, const Mesh& to) {
   }
   double largest = 0.0;
   for (const SurfacePoint& found :
-       nearest_points(points, {to.positions, to.triangles}, Progress(), 1)) {
+       nearest_points(points, {to.positions, to.triangles}, prefilter::Run(1))) {
     largest = std::max(largest, found.distance);
   }
   return largest;
@@ -193,8 +192,8 @@ TEST(SurfaceSimplifier, KeepsPartsThatCanStillBeCut) {
 
 TEST(SurfaceSimplifier, IsTheSameForAnyThreads) {
   const Square square{.height = hilly, .rows = 12};
-  const Mesh one = simplified(square, 1);
-  const Mesh other = simplified(square, 3);
+  const Mesh one = simplified(square, prefilter::Run(1));
+  const Mesh other = simplified(square, prefilter::Run(3));
   EXPECT_EQ(one.positions, other.positions);
   EXPECT_EQ(one.triangles, other.triangles);
 }
@@ -202,7 +201,7 @@ TEST(SurfaceSimplifier, IsTheSameForAnyThreads) {
 TEST(SurfaceSimplifier, AcceptsNonManifoldMeshes) {
   // Three squares at one edge and a duplicate triangle: non-manifold parts are kept unchanged.
   ArraySink sink;
-  SurfaceSimplifier simplifier({1.0, 0, false, 1, Progress()}, &sink);
+  SurfaceSimplifier simplifier({1.0, 0, false, prefilter::Run(1)}, &sink);
   simplifier.add_vertices({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {});
   simplifier.add_triangles({{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 1, 4}});
   simplifier.end_part({});
@@ -212,8 +211,8 @@ TEST(SurfaceSimplifier, AcceptsNonManifoldMeshes) {
 }
 
 TEST(SurfaceSimplifier, StopsWhenAsked) {
-  const Progress progress([](double) { return false; });
-  EXPECT_THROW(simplified({.height = hilly}, 1, progress), Error);
+  const prefilter::Run run([](double) { return false; });
+  EXPECT_THROW(simplified({.height = hilly}, run.with_threads(1)), Error);
 }
 
 }  // namespace

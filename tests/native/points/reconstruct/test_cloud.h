@@ -80,7 +80,7 @@ class CloudStore : public SampleStore {
   CloudStore(const TestCloud& cloud, int depth, int slab_bits)
       : SampleStore(depth, slab_bits, 0, std::numeric_limits<std::uint64_t>::max(), "") {
     ArraySource source = cloud.source();
-    gather_samples(&source, unit_grid(depth), Progress(), 1, this);
+    gather_samples(&source, unit_grid(depth), prefilter::Run(1), this);
   }
 };
 

@@ -64,7 +64,7 @@ TEST(WholeSamples, CombineAllSlabs) {
   const testing::TestCloud cloud = testing::sphere_cloud(5000);
   testing::CloudStore store(cloud, kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
-  const int largest = compute_whole_samples(0, Progress(), 1, &slabs);
+  const int largest = compute_whole_samples(0, prefilter::Run(1), &slabs);
   ASSERT_EQ(slabs.offsets.size(), 1U << kTop);
   std::size_t most = 0;
   std::size_t count = 0;

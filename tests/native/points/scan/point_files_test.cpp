@@ -107,11 +107,12 @@ TEST(OpenPoints, ReadsAllFormats) {
     write(folder.path(example.name), example.contents);
     EXPECT_EQ(read_all(folder.path(example.name)), 2U) << example.name;
   }
-  const std::optional<RangeGrid> grid = read_range_grid(folder.path("binary.ply"), Progress());
+  const std::optional<RangeGrid> grid =
+      read_range_grid(folder.path("binary.ply"), prefilter::Run());
   ASSERT_TRUE(grid.has_value());
   EXPECT_EQ(grid->points, (std::vector<std::int64_t>{1, -1}));
   // Its only face repeats a corner, so it has no triangle.
-  EXPECT_TRUE(read_faces(folder.path("binary.ply"), Progress()).empty());
+  EXPECT_TRUE(read_faces(folder.path("binary.ply"), prefilter::Run()).empty());
   EXPECT_EQ(open_points(folder.path("binary.pcd"))->viewpoint(), (Vector3{1, 2, 3}));
 }
 
@@ -137,8 +138,8 @@ TEST(OpenPoints, ReadsOrRefusesDamagedFiles) {
       try {
         read_all(path);
         if (path.ends_with(".ply")) {
-          read_range_grid(path, Progress());
-          read_faces(path, Progress());
+          read_range_grid(path, prefilter::Run());
+          read_faces(path, prefilter::Run());
         }
       } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument);

@@ -90,7 +90,7 @@ TEST(FindSet, LeavesNoExchangeThatHelps) {
   const TableSection section = section_of(shape, 3);
   for (const int index : {0, 4}) {
     const SubdomainSystem system(shape, section, index);
-    const FittedSet found = find_set(system, 4, Progress());
+    const FittedSet found = find_set(system, 4, prefilter::Run());
     ASSERT_EQ(found.members.size(), 4U);
     for (std::size_t out = 0; out < found.members.size(); ++out) {
       for (int in = 0; in < system.candidates(); ++in) {

@@ -45,11 +45,12 @@ double least_error_of_all_sets(const SubdomainSystem& system, int texels) {
   }
 }
 
-CertifyOptions enough() { return {1'000'000, Progress(), 2}; }
+CertifyOptions enough() { return {1'000'000, prefilter::Run(2)}; }
 
 void expect_least_of_all(const SubdomainSystem& system, int texels) {
   const double least = least_error_of_all_sets(system, texels);
-  for (const FittedSet& start : {poor_set(system, texels), find_set(system, texels, Progress())}) {
+  for (const FittedSet& start :
+       {poor_set(system, texels), find_set(system, texels, prefilter::Run())}) {
     const CertifiedSet certified = certify_set(system, start, enough());
     EXPECT_EQ(certified.gap, 0.0);
     EXPECT_NEAR(certified.set.error, least, 1e-8 * least);
@@ -107,10 +108,10 @@ TEST(CertifySet, FindsTheLeastErrorWhereAllAreClose) {
       EXPECT_EQ(certified.gap, 0.0);
       EXPECT_NEAR(certified.set.error, least, 1e-9 * least);
       // The remaining gap is valid, however few sets were visited.
-      const CertifiedSet first = certify_set(system, start, {1, Progress(), 1});
+      const CertifiedSet first = certify_set(system, start, {1, prefilter::Run(1)});
       EXPECT_LE(first.set.error * (1.0 - first.gap), least * (1.0 + 1e-9));
       // Starting from the best set, one task completes the proof, as the bounds are tight.
-      EXPECT_EQ(certify_set(system, certified.set, {1, Progress(), 1}).gap, 0.0);
+      EXPECT_EQ(certify_set(system, certified.set, {1, prefilter::Run(1)}).gap, 0.0);
     }
   }
   EXPECT_GT(improved, 10);
@@ -133,7 +134,7 @@ TEST(CertifySet, ProvesEverySubdomainOfTheTent) {
     for (int index = 0; index < 6; ++index) {
       const SubdomainSystem system =
           system_of({"tent", texels, 4, 2, 1, 5.0, ImageSpectrum::kWhite}, 3, index);
-      const FittedSet found = find_set(system, texels, Progress());
+      const FittedSet found = find_set(system, texels, prefilter::Run());
       const CertifiedSet certified = certify_set(system, found, enough());
       EXPECT_EQ(certified.gap, 0.0) << texels << " " << index;
       EXPECT_LE(certified.set.error, found.error);
@@ -148,7 +149,7 @@ TEST(CertifySet, LeavesAGapThatTheBestSetIsWithin) {
   ASSERT_EQ(best.gap, 0.0);
   double last_gap = 1.0;
   for (const int nodes : {1, 3000, 20000}) {
-    const CertifiedSet certified = certify_set(system, start, {nodes, Progress(), 1});
+    const CertifiedSet certified = certify_set(system, start, {nodes, prefilter::Run(1)});
     EXPECT_GE(certified.set.error, best.set.error * (1.0 - 1e-8));
     EXPECT_LE(certified.set.error * (1.0 - certified.gap), best.set.error * (1.0 + 1e-8));
     EXPECT_LE(certified.gap, last_gap);
@@ -160,10 +161,10 @@ TEST(CertifySet, LeavesAGapThatTheBestSetIsWithin) {
 TEST(CertifySet, IsTheSameOnAnyNumberOfThreads) {
   const SubdomainSystem system = system_of({"lanczos2", 6, 4, 2, 1}, 3, 1);
   const FittedSet start = poor_set(system, 6);
-  const CertifiedSet one = certify_set(system, start, {8000, Progress(), 1});
+  const CertifiedSet one = certify_set(system, start, {8000, prefilter::Run(1)});
   EXPECT_GT(one.gap, 0.0);
   for (const int threads : {2, 5}) {
-    const CertifiedSet other = certify_set(system, start, {8000, Progress(), threads});
+    const CertifiedSet other = certify_set(system, start, {8000, prefilter::Run(threads)});
     EXPECT_EQ(other.set.members, one.set.members);
     EXPECT_EQ(other.set.weights, one.set.weights);
     EXPECT_EQ(other.gap, one.gap);
@@ -182,7 +183,7 @@ TEST(CertifySet, IsCancelled) {
   const SubdomainSystem system = system_of({"lanczos2", 8, 4, 2, 1}, 3, 1);
   int calls = 0;
   CertifyOptions options = enough();
-  options.progress = Progress([&](double) { return ++calls < 3; });
+  options.run = prefilter::Run([&](double) { return ++calls < 3; });
   EXPECT_THROW(certify_set(system, poor_set(system, 8), options), Error);
   EXPECT_EQ(calls, 3);
 }

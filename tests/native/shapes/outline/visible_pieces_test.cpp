@@ -60,7 +60,7 @@ class Scene {
   void expect_pieces(double clearance = 1e-2) {
     for (const Outline& outline : outlines_) chains_.push_back(fine_chains(outline, 150));
     const std::vector<VisiblePiece> pieces =
-        visible_pieces(layers(), ArrangementEffort::kUnbounded, 2).value();
+        visible_pieces(layers(), ArrangementEffort::kUnbounded, prefilter::Run(2)).value();
     std::vector<std::vector<Chain>> piece_chains;
     for (const VisiblePiece& piece : pieces)
       piece_chains.push_back(fine_chains(piece.outline, 150));
@@ -165,15 +165,16 @@ TEST(VisiblePieces, AreTheSameForAnyNumberOfThreads) {
   for (int i = 0; i < 20; ++i) outlines.push_back(blob(&random));
   std::vector<CoveringLayer> layers;
   for (const Outline& outline : outlines) layers.push_back({&outline});
-  const auto one = visible_pieces(layers, ArrangementEffort::kUnbounded, 1).value();
-  const auto four = visible_pieces(layers, ArrangementEffort::kUnbounded, 4).value();
+  const auto one = visible_pieces(layers, ArrangementEffort::kUnbounded, prefilter::Run(1)).value();
+  const auto four =
+      visible_pieces(layers, ArrangementEffort::kUnbounded, prefilter::Run(4)).value();
   ASSERT_EQ(one.size(), four.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_TRUE(std::equal(one[i].outline.points().begin(), one[i].outline.points().end(),
                            four[i].outline.points().begin(), four[i].outline.points().end()));
   }
-  EXPECT_THROW(visible_pieces(layers, ArrangementEffort::kUnbounded, 2,
-                              Progress([](double) { return false; })),
+  EXPECT_THROW(visible_pieces(layers, ArrangementEffort::kUnbounded,
+                              prefilter::Run(2, [](double) { return false; })),
                Error);
 }
 

@@ -232,7 +232,8 @@ TEST(BoxCoverage, AnyOutlineByRuleAndThreads) {
   star.close();
   const auto draw = [&](FillRule rule, int threads) {
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size.width) * size.height, 0);
-    rasterize_coverage(star, rule, {bytes.data(), size.width, size.height, size.width}, threads);
+    rasterize_coverage(star, rule, {bytes.data(), size.width, size.height, size.width},
+                       prefilter::Run(threads));
     return bytes;
   };
   const std::size_t middle = 350U * 600U + 300U;

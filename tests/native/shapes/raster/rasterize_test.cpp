@@ -44,7 +44,7 @@ RasterOptions options_of(int width, int height, std::string_view filter) {
   options.height = height;
   options.filter = filter;
   options.overlap = Overlap::kAdd;
-  options.threads = 1;
+  options.run = prefilter::Run(1);
   return options;
 }
 
@@ -119,7 +119,7 @@ TEST(Rasterize, GivesTheSameWithAnyNumberOfThreads) {
     RasterOptions options = options_of(50, 300, filter);
     const std::vector<float> one = values_of(shapes, options);
     for (const float value : one) ASSERT_TRUE(std::isfinite(value));
-    options.threads = 3;
+    options.run = prefilter::Run(3);
     EXPECT_EQ(values_of(shapes, options), one) << filter;
   }
 }

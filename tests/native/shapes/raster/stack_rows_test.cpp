@@ -632,9 +632,9 @@ TEST(StackRows, ThreadsDoNotMatter) {
   options.width = 40;
   options.height = 36;
   options.filter = "mitchell";
-  options.threads = 1;
+  options.run = prefilter::Run(1);
   const Image one = rasterize(shapes, options);
-  options.threads = 5;
+  options.run = prefilter::Run(5);
   const Image five = rasterize(shapes, options);
   for (int i = 0; i < 40 * 36 * 4; ++i) ASSERT_EQ(one.texel(0, 0)[i], five.texel(0, 0)[i]) << i;
 }

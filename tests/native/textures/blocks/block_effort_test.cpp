@@ -33,15 +33,13 @@ Bytes compressed(const Bytes& texels, int width, int height, BlockFormat format,
   BlockOptions options;
   options.format = format;
   options.effort = effort;
-  options.threads = threads;
-  return compress_blocks(texels.data(), width, height, options, Progress());
+  return compress_blocks(texels.data(), width, height, options, prefilter::Run(threads));
 }
 
 Bytes decoded(const Bytes& blocks, int width, int height, BlockFormat format) {
   DecodeOptions options;
   options.format = format;
-  options.threads = 1;
-  return decode_blocks(blocks, width, height, options, Progress());
+  return decode_blocks(blocks, width, height, options, prefilter::Run(1));
 }
 
 /// The sum of squares over the first channels.

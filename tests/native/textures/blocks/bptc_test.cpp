@@ -25,10 +25,9 @@ constexpr HalfBits kLargestHalf = 0x7bff;  // 65504
 constexpr HalfBits kHalfOne = 0x3c00;
 constexpr HalfBits kMinus = 0x8000;
 
-BlockOptions options_of(BlockFormat format, int threads = 1) {
+BlockOptions options_of(BlockFormat format) {
   BlockOptions options;
   options.format = format;
-  options.threads = threads;
   return options;
 }
 
@@ -51,16 +50,16 @@ std::vector<Channel> decoded(const Bytes& blocks, int width, int height, int cha
 }
 
 Bytes through_bc7(const Bytes& texels, int width, int height) {
-  const Bytes blocks =
-      compress_blocks(texels.data(), width, height, options_of(BlockFormat::kBc7), Progress());
+  const Bytes blocks = compress_blocks(texels.data(), width, height, options_of(BlockFormat::kBc7),
+                                       prefilter::Run(1));
   return decoded<std::uint8_t>(
       blocks, width, height, 4,
       [](const std::uint8_t* block, std::uint8_t* out) { bcdec_bc7(block, out, 16); });
 }
 
 Halves through_bc6h(const Halves& texels, int width, int height) {
-  const Bytes blocks =
-      compress_blocks(texels.data(), width, height, options_of(BlockFormat::kBc6h), Progress());
+  const Bytes blocks = compress_blocks(texels.data(), width, height, options_of(BlockFormat::kBc6h),
+                                       prefilter::Run(1));
   return decoded<HalfBits>(blocks, width, height, 3, [](const std::uint8_t* block, HalfBits* out) {
     bcdec_bc6h_half(block, out, 12, 0);
   });
@@ -197,17 +196,17 @@ TEST(Bc6h, ExtremesStayFinite) {
 TEST(Bc6h, IsTheSameForAnyNumberOfThreads) {
   const Halves texels = waves_of_halves(301, 9);
   const Bytes once =
-      compress_blocks(texels.data(), 301, 9, options_of(BlockFormat::kBc6h), Progress());
+      compress_blocks(texels.data(), 301, 9, options_of(BlockFormat::kBc6h), prefilter::Run(1));
   for (const int threads : {0, 2, 5}) {
-    EXPECT_EQ(
-        compress_blocks(texels.data(), 301, 9, options_of(BlockFormat::kBc6h, threads), Progress()),
-        once);
+    EXPECT_EQ(compress_blocks(texels.data(), 301, 9, options_of(BlockFormat::kBc6h),
+                              prefilter::Run(threads)),
+              once);
   }
 }
 
 TEST(Bc6h, CanBeCancelled) {
   const Halves texels = waves_of_halves(64, 64);
-  const Progress stop([](double) { return false; });
+  const prefilter::Run stop([](double) { return false; });
   EXPECT_THROW(compress_blocks(texels.data(), 64, 64, options_of(BlockFormat::kBc6h), stop), Error);
 }
 

@@ -24,15 +24,15 @@ Bytes random_texels(int width, int height, unsigned seed) {
   return texels;
 }
 
-BlockOptions options_for(BlockFormat format, int threads = 1) {
+BlockOptions options_for(BlockFormat format) {
   BlockOptions options;
   options.format = format;
-  options.threads = threads;
   return options;
 }
 
 Bytes compressed(const Bytes& texels, int width, int height, BlockFormat format, int threads = 1) {
-  return compress_blocks(texels.data(), width, height, options_for(format, threads), Progress());
+  return compress_blocks(texels.data(), width, height, options_for(format),
+                         prefilter::Run(threads));
 }
 
 /// Decodes texel `i` of a single-channel block, by the definition of BC4.
@@ -287,7 +287,7 @@ TEST(CompressBlocks, WeighColorsByAlpha) {
   const auto error_of_opaque = [&texels](bool weigh) {
     BlockOptions options = options_for(BlockFormat::kBc3);
     options.weigh_by_alpha = weigh;
-    const Bytes blocks = compress_blocks(texels.data(), 4, 4, options, Progress());
+    const Bytes blocks = compress_blocks(texels.data(), 4, 4, options, prefilter::Run(1));
     double sum = 0.0;
     for (int i = 0; i < 4; ++i) {
       const Color found = decoded_color(blocks.data() + 8, i);
@@ -304,8 +304,9 @@ TEST(CompressBlocks, RefusesTexelsOfAnotherKind) {
   const Bytes bytes(64);
   const std::vector<HalfBits> halves(64);
   EXPECT_THROW(compressed(bytes, 4, 4, BlockFormat::kBc6h), Error);
-  EXPECT_THROW(compress_blocks(halves.data(), 4, 4, options_for(BlockFormat::kBc7), Progress()),
-               Error);
+  EXPECT_THROW(
+      compress_blocks(halves.data(), 4, 4, options_for(BlockFormat::kBc7), prefilter::Run(1)),
+      Error);
 }
 
 TEST(CompressBlocks, RefusesEmptyImages) {
@@ -315,7 +316,7 @@ TEST(CompressBlocks, RefusesEmptyImages) {
 
 TEST(CompressBlocks, CanBeCancelled) {
   const Bytes texels = random_texels(64, 64, 6);
-  const Progress stop([](double) { return false; });
+  const prefilter::Run stop([](double) { return false; });
   try {
     compress_blocks(texels.data(), 64, 64, options_for(BlockFormat::kBc1), stop);
     FAIL() << "was not cancelled";

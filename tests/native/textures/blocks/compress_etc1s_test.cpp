@@ -39,12 +39,12 @@ Image waves(int width, int height) {
 }
 
 Etc1sTexture compressed(const std::vector<Image>& levels, const Etc1sOptions& options,
-                        const Progress& progress = Progress()) {
+                        const prefilter::Run& run = prefilter::Run()) {
   std::vector<Etc1sImage> images;
   for (const Image& level : levels) {
     images.push_back({level.rgba.data(), level.width, level.height});
   }
-  return compress_etc1s(images, options, progress);
+  return compress_etc1s(images, options, run);
 }
 
 std::vector<Bytes> decoded(const Etc1sTexture& texture, const std::vector<Image>& levels) {
@@ -55,7 +55,7 @@ std::vector<Bytes> decoded(const Etc1sTexture& texture, const std::vector<Image>
   }
   return decode_etc1s({texture.endpoint_count, texture.selector_count, texture.endpoints,
                        texture.selectors, texture.tables},
-                      parts, Progress());
+                      parts, prefilter::Run());
 }
 
 TEST(CompressEtc1s, GivesBackColorsAndAlphaOfAllLevels) {
@@ -96,10 +96,8 @@ TEST(CompressEtc1s, RepeatsTexelsAtEdges) {
 TEST(CompressEtc1s, DoesNotDependOnThreads) {
   const std::vector<Image> levels = {waves(200, 120)};
   Etc1sOptions options;
-  options.threads = 1;
-  const Etc1sTexture one = compressed(levels, options);
-  options.threads = 5;
-  const Etc1sTexture five = compressed(levels, options);
+  const Etc1sTexture one = compressed(levels, options, prefilter::Run(1));
+  const Etc1sTexture five = compressed(levels, options, prefilter::Run(5));
   EXPECT_EQ(one.endpoints, five.endpoints);
   EXPECT_EQ(one.selectors, five.selectors);
   EXPECT_EQ(one.tables, five.tables);
@@ -115,10 +113,10 @@ TEST(CompressEtc1s, RefusesInvalidSettings) {
     options.quality = quality;
     EXPECT_THROW(compressed(levels, options), Error);
   }
-  EXPECT_THROW(compressed(levels, {}, Progress([](double) { return false; })), Error);
+  EXPECT_THROW(compressed(levels, {}, prefilter::Run([](double) { return false; })), Error);
   const std::uint8_t texel[4] = {};
   const std::vector<Etc1sImage> huge = {{texel, 1 << 20, 1 << 20}};
-  EXPECT_THROW(compress_etc1s(huge, {}, Progress()), Error);
+  EXPECT_THROW(compress_etc1s(huge, {}, prefilter::Run()), Error);
 }
 
 /// A selector codebook whose table has a code for one symbol only, bit by bit: three flags, the

@@ -21,10 +21,9 @@ constexpr BlockFormat kOfBytes[] = {
     BlockFormat::kAstc4x4, BlockFormat::kAstc6x6,  BlockFormat::kAstc8x8, BlockFormat::kUastc};
 constexpr BlockFormat kOfFloats[] = {BlockFormat::kAstc4x4Hdr, BlockFormat::kAstc6x6Hdr};
 
-BlockOptions mobile_options(BlockFormat format, int threads = 1) {
+BlockOptions mobile_options(BlockFormat format) {
   BlockOptions options;
   options.format = format;
-  options.threads = threads;
   return options;
 }
 
@@ -39,7 +38,8 @@ std::vector<Channel> random_texels(int width, int height, unsigned largest, unsi
 template <class Channel>
 Bytes compressed(const std::vector<Channel>& texels, int width, int height, BlockFormat format,
                  int threads = 1) {
-  return compress_blocks(texels.data(), width, height, mobile_options(format, threads), Progress());
+  return compress_blocks(texels.data(), width, height, mobile_options(format),
+                         prefilter::Run(threads));
 }
 
 /// HDR blocks decoded by astcenc.
@@ -93,9 +93,9 @@ TEST(MobileBlocks, AreTheSameForAnyNumberOfThreads) {
 TEST(MobileBlocks, AstcDependsOnTheEncoding) {
   const Bytes texels = random_texels<std::uint8_t>(48, 48, 255, 4);
   BlockOptions options = mobile_options(BlockFormat::kAstc4x4);
-  const Bytes linear = compress_blocks(texels.data(), 48, 48, options, Progress());
+  const Bytes linear = compress_blocks(texels.data(), 48, 48, options, prefilter::Run(1));
   options.is_srgb = true;
-  EXPECT_NE(compress_blocks(texels.data(), 48, 48, options, Progress()), linear);
+  EXPECT_NE(compress_blocks(texels.data(), 48, 48, options, prefilter::Run(1)), linear);
 }
 
 TEST(MobileBlocks, HdrHoldsAllHalfFloats) {
@@ -133,7 +133,7 @@ TEST(MobileBlocks, HdrHasNoNegativeValues) {
 
 TEST(MobileBlocks, CanBeCancelled) {
   const Bytes texels = random_texels<std::uint8_t>(64, 64, 255, 6);
-  const Progress stop([](double) { return false; });
+  const prefilter::Run stop([](double) { return false; });
   EXPECT_THROW(compress_blocks(texels.data(), 64, 64, mobile_options(BlockFormat::kAstc8x8), stop),
                Error);
 }
@@ -147,7 +147,7 @@ TEST(MobileBlocks, RefuseMissingInput) {
 
 TEST(Supercompress, RecordsTheContentSize) {
   const Bytes bytes(300000, 7);
-  const Bytes frame = supercompress(bytes.data(), bytes.size(), Progress());
+  const Bytes frame = supercompress(bytes.data(), bytes.size(), prefilter::Run());
   EXPECT_LT(frame.size(), 100U);
   // RFC 8878: the magic number, then a header whose upper two bits select a length of 4 bytes.
   EXPECT_EQ((Bytes(frame.begin(), frame.begin() + 4)), (Bytes{0x28, 0xb5, 0x2f, 0xfd}));
@@ -158,13 +158,13 @@ TEST(Supercompress, RecordsTheContentSize) {
 
 TEST(Supercompress, HardlyGrowsNoise) {
   const Bytes noise = random_texels<std::uint8_t>(300, 300, 255, 8);
-  const Bytes frame = supercompress(noise.data(), noise.size(), Progress());
+  const Bytes frame = supercompress(noise.data(), noise.size(), prefilter::Run());
   EXPECT_LT(frame.size(), noise.size() + 100);
 }
 
 TEST(Supercompress, CanBeCancelled) {
   const Bytes noise = random_texels<std::uint8_t>(300, 300, 255, 9);
-  const Progress stop([](double) { return false; });
+  const prefilter::Run stop([](double) { return false; });
   EXPECT_THROW(supercompress(noise.data(), noise.size(), stop), Error);
 }
 

@@ -83,15 +83,15 @@ TEST_P(LevelTest, MeetsTheOptimalityConditions) {
   const Image image = testing::random_image(1, 8, 8, 1);
   const Surface surface = unit_square();
   const TexelTriangles triangles =
-      map_to_texels({&surface}, 8, 8, wrap, MassOf::kArea, Progress(), 0);
+      map_to_texels({&surface}, 8, 8, wrap, MassOf::kArea, prefilter::Run(0));
   for (const ValueRange range : {ValueRange{-kInfinity, kInfinity}, ValueRange{0.35F, 0.65F}}) {
     BilinearSystem<1> system(width, height, wrap);
     sweep_moments<1>(triangles, image.view(), wrap, {.first_level = 1, .last_level = level},
-                     Progress(), [&](const MomentBlock<1>& block) {
+                     prefilter::Run(), [&](const MomentBlock<1>& block) {
                        if (block.level == level) system.add(block);
                      });
-    const auto solution = system.solve(
-        TargetShares(), {.ranges = {range}, .tolerance = 1e-7, .threads = 1}, nullptr, Progress());
+    const auto solution = system.solve(TargetShares(), {.ranges = {range}, .tolerance = 1e-7},
+                                       nullptr, prefilter::Run());
     const Dense dense = dense_system(image, width, height, wrap, 800);
     const int count = width * height;
     double mean_diagonal = 0.0;
@@ -131,12 +131,12 @@ TEST(BilinearSystemTest, UnreadTexelsAreMarked) {
   const Surface corner = testing::one_triangle({{{0.01, 0.01}, {0.1, 0.01}, {0.01, 0.1}}});
   const Image image = testing::random_image(2, 16, 16, 1);
   const TexelTriangles triangles =
-      map_to_texels({&corner}, 16, 16, {}, MassOf::kArea, Progress(), 0);
+      map_to_texels({&corner}, 16, 16, {}, MassOf::kArea, prefilter::Run(0));
   BilinearSystem<1> system(8, 8, {});
-  sweep_moments<1>(triangles, image.view(), {}, {.first_level = 1, .last_level = 1}, Progress(),
-                   [&](const MomentBlock<1>& block) { system.add(block); });
+  sweep_moments<1>(triangles, image.view(), {}, {.first_level = 1, .last_level = 1},
+                   prefilter::Run(), [&](const MomentBlock<1>& block) { system.add(block); });
   const auto solution =
-      system.solve(TargetShares(), {.ranges = {ValueRange{0.0F, 1.0F}}}, nullptr, Progress());
+      system.solve(TargetShares(), {.ranges = {ValueRange{0.0F, 1.0F}}}, nullptr, prefilter::Run());
   // The triangle ends at 0.8 texels, so it reads the first two columns and rows.
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 8; ++x) {

@@ -16,7 +16,8 @@ constexpr WrapModes kClamp = {Wrap::kClamp, Wrap::kClamp};
 
 double share(const Image& alpha, const Image& weights, float threshold, int samples = 16,
              WrapModes wrap = kClamp, int threads = 1) {
-  return covered_share(alpha.view(), weights.view(), samples, threshold, wrap, {}, threads);
+  return covered_share(alpha.view(), weights.view(), samples, threshold, wrap,
+                       prefilter::Run(threads));
 }
 
 TEST(CoveredShare, OneTexelCoversItsHyperbolas) {

@@ -91,7 +91,7 @@ TEST(KeepCoverage, StopsWhenCancelled) {
   const Image level = ramp(32, 3.0);
   for (const double until : {0.0, 0.35, 0.5}) {
     CoverageOptions options;
-    options.progress = Progress([until](double fraction) { return fraction <= until; });
+    options.run = prefilter::Run([until](double fraction) { return fraction <= until; });
     EXPECT_THROW(keep_coverage({image.view(), level.view(), level.view()}, {}, options), Error);
   }
 }

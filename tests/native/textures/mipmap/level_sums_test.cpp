@@ -21,7 +21,7 @@ constexpr int kSize = 8;
 // The lower left half of the unit square, of area 1/2 in space.
 TexelTriangles half_square() {
   static const Surface surface = testing::one_triangle({{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}}, 0.5);
-  return map_to_texels({&surface}, kSize, kSize, kClamped, MassOf::kArea, Progress(), 1);
+  return map_to_texels({&surface}, kSize, kSize, kClamped, MassOf::kArea, prefilter::Run(1));
 }
 
 double lookup(const ImageView& image, double u, double v) {
@@ -59,7 +59,7 @@ TEST(LevelSums, SquaresMatchTheReader) {
     int blocks = 0;
     const TargetSquares sums =
         sum_image<1>(half_square(), {TexelSource(swept.view()), image.view()}, kClamped, reader,
-                     has_squares, 2, Progress(), 1, [&](const MomentBlock<1>& block) {
+                     has_squares, 2, prefilter::Run(1), [&](const MomentBlock<1>& block) {
                        EXPECT_GT(block.level, 0);
                        EXPECT_LE(block.level, 2);
                        ++blocks;
@@ -103,7 +103,7 @@ TEST(LevelSums, MeansHaveTheirOwnSquares) {
     double under_tents[4][4] = {};
     const TargetSquares squares = sum_image<1>(
         half_square(), {TexelSource(image.view()), image.view(), &means}, kClamped, Reader::kLinear,
-        has_squares, 2, Progress(), 1, [&](const MomentBlock<1>& block) {
+        has_squares, 2, prefilter::Run(1), [&](const MomentBlock<1>& block) {
           ASSERT_EQ(block.means != nullptr, block.level == 1);
           if (block.level > 1) return;
           for_each_dual_cell_of_means(block, [&](const auto& moments, int column, int row) {
@@ -136,13 +136,13 @@ TEST(LevelSums, CouplingsCarryMeansToTheNextLevel) {
   const Image finer = testing::random_image(6, kSize / 2, kSize / 2, 1);
   LevelCoupling coupling(kSize / 2, kSize / 2, kSize / 4, kSize / 4, kClamped);
   sum_image<1>(half_square(), {TexelSource(image.view()), image.view()}, kClamped, Reader::kLinear,
-               false, 2, Progress(), 1, [&](const MomentBlock<1>& block) {
+               false, 2, prefilter::Run(1), [&](const MomentBlock<1>& block) {
                  if (block.level == 1) coupling.add(block);
                });
   const NinePointSystem<float> coarse(kSize / 4, kSize / 4, kClamped);
   std::vector<LaneValues> sums(coarse.size());
   sums[0].v[0] = 10.0F;
-  coupling.add_fine(finer, coarse, Progress(), 1, &sums);
+  coupling.add_fine(finer, coarse, prefilter::Run(1), &sums);
   for (const auto& [i, j] : {std::pair(0, 0), std::pair(1, 0), std::pair(0, 1), std::pair(1, 1)}) {
     const double before = i + j == 0 ? 10.0 : 0.0;
     EXPECT_NEAR(sums[coarse.at(i, j)].v[0], before + tent_integral(finer.view(), 2, i, j), 5e-3);

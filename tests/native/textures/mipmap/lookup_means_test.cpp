@@ -15,7 +15,7 @@ constexpr WrapModes kRepeat = {Wrap::kRepeat, Wrap::kRepeat};
 
 Image means(const Image& normals, const Image& roughness, WrapModes wrap = kRepeat,
             int threads = 1) {
-  return lookup_means(normals.view(), roughness.view(), wrap, 0.02F, {}, threads);
+  return lookup_means(normals.view(), roughness.view(), wrap, 0.02F, prefilter::Run(threads));
 }
 
 Image all(float x, float y, float z) {

@@ -20,13 +20,12 @@ using Cells = std::map<Key, CellMoments<2>>;
 Cells sweep(const Surface& surface, const Image& image, WrapModes wrap, int first_level,
             int threads) {
   const TexelTriangles triangles =
-      map_to_texels({&surface}, image.width, image.height, wrap, MassOf::kArea, Progress(), 0);
+      map_to_texels({&surface}, image.width, image.height, wrap, MassOf::kArea, prefilter::Run(0));
   Cells cells;
   std::mutex mutex;
   const int last = full_level_count(image.width, image.height) - 1;
-  sweep_moments<2>(triangles, image.view(), wrap,
-                   {.first_level = first_level, .last_level = last, .threads = threads}, Progress(),
-                   [&](const MomentBlock<2>& block) {
+  sweep_moments<2>(triangles, image.view(), wrap, {.first_level = first_level, .last_level = last},
+                   prefilter::Run(threads), [&](const MomentBlock<2>& block) {
                      const std::lock_guard<std::mutex> lock(mutex);
                      for (int y = 0; y < block.height; ++y) {
                        for (int x = 0; x < block.width; ++x) {

@@ -137,11 +137,11 @@ TEST_P(ViewSystemTest, SolutionIsOptimal) {
   const double errors = both(start, 0.0, &changes);
   const double steadiness = options.steadiness * errors / changes;
   for (const int threads : {1, 3}) {
-    options.threads = threads;
-    ViewSystem system(levels, {1e-6, 1e-6, 1e-6}, scene.seen, options, Progress());
+    options.run = prefilter::Run(threads);
+    ViewSystem system(levels, {1e-6, 1e-6, 1e-6}, scene.seen, options, prefilter::Run());
     SolveOptions range;
     range.ranges.fill({-100.0F, 100.0F});
-    const std::vector<Image> solved = system.solve(range, Progress());
+    const std::vector<Image> solved = system.solve(range, prefilter::Run());
     ASSERT_EQ(solved.size(), 2U);
     std::array<double, 21> texels = start;
     for (std::size_t k = 0; k < 4; ++k) texels[16 + k] = solved[0].data[k];
@@ -167,10 +167,10 @@ TEST_P(ViewSystemTest, SolutionIsWithinItsRange) {
   ViewFitOptions options;
   options.lookups = GetParam();
   options.steadiness = 0.0;
-  ViewSystem system(levels, {1e-6, 1e-6, 1e-6}, scene.seen, options, Progress());
+  ViewSystem system(levels, {1e-6, 1e-6, 1e-6}, scene.seen, options, prefilter::Run());
   SolveOptions range;
   range.ranges.fill({0.45F, 0.55F});
-  for (const Image& level : system.solve(range, Progress())) {
+  for (const Image& level : system.solve(range, prefilter::Run())) {
     for (const float value : level.data) {
       EXPECT_GE(value, 0.45F);
       EXPECT_LE(value, 0.55F);

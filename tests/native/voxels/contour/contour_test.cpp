@@ -32,7 +32,7 @@ ContourOptions options_of(Interpolant interpolant, int threads = 1) {
   ContourOptions options;
   options.interpolant = interpolant;
   options.clean_up = false;
-  options.threads = threads;
+  options.run = prefilter::Run(threads);
   return options;
 }
 
@@ -253,7 +253,7 @@ TEST(ContourOccupancies, NeverCrossesItself) {
       const TriangleMesh mesh = contour_occupancies(tree, kUnitBox, options_of(interpolant));
       EXPECT_EQ(fault_of(mesh), "");
       EXPECT_TRUE(
-          intersecting_triangles({mesh.positions, mesh.triangles}, {}, Progress(), 1).empty())
+          intersecting_triangles({mesh.positions, mesh.triangles}, {}, prefilter::Run(1)).empty())
           << seed;
     }
   }
@@ -282,7 +282,8 @@ TEST(ContourOccupancies, NeverFolds) {
     const TriangleMesh mesh = contour_occupancies(tree, kUnitBox, options_of(Interpolant::kPlane));
     EXPECT_EQ(fault_of(mesh), "");
     EXPECT_GT(least_cosine(mesh), -0.5001) << seed;
-    EXPECT_TRUE(intersecting_triangles({mesh.positions, mesh.triangles}, {}, Progress(), 1).empty())
+    EXPECT_TRUE(
+        intersecting_triangles({mesh.positions, mesh.triangles}, {}, prefilter::Run(1)).empty())
         << seed;
   }
 }
@@ -391,7 +392,7 @@ TEST(ContourTree, FullAndEmptyRoots) {
   // The faces of the root, minus the parts cut off at its edges and corners.
   EXPECT_NEAR(volume_of(cube), 17.0 / 24.0, 1e-6);
   ContourOptions stop;
-  stop.progress = Progress([](double) { return false; });
+  stop.run = prefilter::Run([](double) { return false; });
   EXPECT_THROW(contour_tree(tree, kUnitBox, stop), Error);
 }
 

@@ -68,7 +68,7 @@ CellTree uniform_tree(unsigned seed, int depth) {
     link_blocks(&level);
     tree.levels.push_back(std::move(level));
   }
-  update_means(&tree, Progress(), 1);
+  update_means(&tree, prefilter::Run(1));
   return tree;
 }
 
@@ -79,7 +79,7 @@ TEST(QuadContour, IsManifoldForAnyCells) {
       if (interpolant != Interpolant::kOccupancy && seed > 3) continue;
       ContourOptions options;
       options.interpolant = interpolant;
-      options.threads = 1;
+      options.run = prefilter::Run(1);
       ASSERT_EQ(fault_of(contour_quads(uniform_tree(seed, 3), kUnit, options)), "") << seed;
     }
   }
@@ -90,7 +90,7 @@ TEST(QuadContour, IsManifoldForAnyTree) {
     for (const Interpolant interpolant : {Interpolant::kPlane, Interpolant::kOccupancy}) {
       ContourOptions options;
       options.interpolant = interpolant;
-      options.threads = 1;
+      options.run = prefilter::Run(1);
       ASSERT_EQ(fault_of(contour_quads(random_tree(seed, 4), kUnit, options)), "") << seed;
     }
   }

@@ -95,7 +95,7 @@ struct Torus {
   }
 
   void relax(int threads = 1) {
-    relax_places(loops, positions, normals, Progress(), threads, &places);
+    relax_places(loops, positions, normals, prefilter::Run(threads), &places);
   }
 
   // Mean distance, along the surface, of vertices from the mean of their neighbors, in steps across

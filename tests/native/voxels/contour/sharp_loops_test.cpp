@@ -97,7 +97,7 @@ struct LoopedCube {
     for (const double way : {-tip, tip}) features.push_back(feature({0.0, 0.0, way}));
     for (const double way : {-tip, tip}) features.push_back(feature({0.0, way, 0.0}));
     for (const double way : {-tip, tip}) features.push_back(feature({way, 0.0, 0.0}));
-    loops = link_loops(sides, Wedge(), samples, Progress(), 2);
+    loops = link_loops(sides, Wedge(), samples, prefilter::Run(2));
   }
 
   static Feature feature(const Vector3& position) { return {position, {}, {0, 1}, false}; }
@@ -136,14 +136,14 @@ TEST(LinkedLoops, AreLinkedAcrossTheirSharedSide) {
 TEST(LinkedLoops, AreNotLinkedAcrossTwoSidesOrWithoutAnEdge) {
   std::vector<Vector3> positions(5);
   const std::vector<SharpLoop> twice = {loop_of({0, 1, 2, 3}), loop_of({2, 1, 0, 4})};
-  const LinkedLoops loops = link_loops(twice, Wedge(), samples_of(positions), Progress(), 1);
+  const LinkedLoops loops = link_loops(twice, Wedge(), samples_of(positions), prefilter::Run(1));
   for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(loops.sides[0][k].other, -1);
   EXPECT_TRUE(loops.sides[0][0].is_divided);
   const std::vector<SharpLoop> pair = {loop_of({0, 1, 2}), loop_of({1, 0, 3})};
   VertexSamples samples = samples_of(positions);
-  EXPECT_EQ(link_loops(pair, Wedge(), samples, Progress(), 1).sides[0][0].other, 1);
+  EXPECT_EQ(link_loops(pair, Wedge(), samples, prefilter::Run(1)).sides[0][0].other, 1);
   samples.index[0] = -1;
-  EXPECT_FALSE(link_loops(pair, Wedge(), samples, Progress(), 1).sides[0][0].is_divided);
+  EXPECT_FALSE(link_loops(pair, Wedge(), samples, prefilter::Run(1)).sides[0][0].is_divided);
   // With one label: divided where the normals differ and an edge of the region is near.
   samples = samples_of(positions);
   for (SourcePoint& sample : samples.samples) sample.label = 0;
@@ -264,7 +264,7 @@ struct BentLoop {
 
   // Triangles of the middle loop in the plane z = 0.
   std::vector<Triangle> triangles(const std::vector<SharpLoop>& sharp) const {
-    const LinkedLoops loops = link_loops(sharp, Wedge(), samples, Progress(), 1);
+    const LinkedLoops loops = link_loops(sharp, Wedge(), samples, prefilter::Run(1));
     std::vector<Feature> features;
     for (const SharpLoop& loop : sharp) features.push_back(feature_of(loop));
     FacetedMesh mesh = {positions, {}, {}, LoopedCube::Kinds(8, VertexKind::kSurface)};
@@ -341,7 +341,7 @@ TEST(LoopTriangles, GiveEachDiagonalToOneLoop) {
   const SharpLoop middle = loop_of({0, 1, 2, 3, 4, 5});
   EXPECT_TRUE(has_diagonal({middle, loop_of({5, 6, 0}), loop_of({4, 3, 7})}));
   const LinkedLoops loops =
-      link_loops({loop_of({0, 3, 7}), middle}, Wedge(), bent.samples, Progress(), 1);
+      link_loops({loop_of({0, 3, 7}), middle}, Wedge(), bent.samples, prefilter::Run(1));
   EXPECT_EQ(loops.sides[1][0].shared, 1U << 3U);
   EXPECT_EQ(loops.sides[1][3].shared, 1U << 0U);
   EXPECT_EQ(loops.sides[0][0].shared, 0U);
@@ -458,17 +458,18 @@ TEST(NearIntersections, EqualTheIntersectionsOfSuspects) {
   Flags is_suspect(mesh.triangles.size(), 0);
   for (std::size_t t = kFirst; t < is_suspect.size(); ++t) is_suspect[t] = t % 9 == 0 ? 1 : 0;
   Pairs expected;
-  for (const auto& pair : intersecting_triangles({mesh.positions, mesh.triangles}, {}, {}, 1)) {
+  for (const auto& pair :
+       intersecting_triangles({mesh.positions, mesh.triangles}, {}, prefilter::Run(1))) {
     if (std::min(pair[0], pair[1]) < kFirst) continue;
     if (is_suspect[pair[0]] != 0 || is_suspect[pair[1]] != 0) expected.push_back(pair);
   }
   ASSERT_GT(expected.size(), 10U);
   const MeshView<std::int32_t> view{mesh.positions, mesh.triangles};
   for (const double side : {0.5, 2.0, 100.0}) {
-    EXPECT_EQ(near_intersections(view, kFirst, is_suspect, side, Progress(), 2), expected);
+    EXPECT_EQ(near_intersections(view, kFirst, is_suspect, side, prefilter::Run(2)), expected);
   }
   const Flags none(mesh.triangles.size(), 0);
-  EXPECT_TRUE(near_intersections(view, 0, none, 1.0, Progress(), 1).empty());
+  EXPECT_TRUE(near_intersections(view, 0, none, 1.0, prefilter::Run(1)).empty());
 }
 
 TEST(Facing, FollowsTheSamples) {
@@ -517,7 +518,7 @@ struct Row {
       samples.samples[v].label = static_cast<std::int32_t>(v % 2);
       samples.samples[v].normal = v % 2 == 0 ? Vector3{0.0, 0.0, -1.0} : Vector3{-1.0, 0.0, 0.0};
     }
-    loops = link_loops(corners, Wedge(), samples, Progress(), 1);
+    loops = link_loops(corners, Wedge(), samples, prefilter::Run(1));
   }
 };
 

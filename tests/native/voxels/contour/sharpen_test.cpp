@@ -61,7 +61,8 @@ ContourOptions sharp(const std::vector<SourceMesh>& sources) {
 
 void expect_sound(const TriangleMesh& mesh) {
   EXPECT_EQ(fault_of(mesh), "");
-  EXPECT_TRUE(intersecting_triangles({mesh.positions, mesh.triangles}, {}, Progress(), 1).empty());
+  EXPECT_TRUE(
+      intersecting_triangles({mesh.positions, mesh.triangles}, {}, prefilter::Run(1)).empty());
 }
 
 TEST(Sharpen, CubesHaveTheirCorners) {
@@ -87,7 +88,7 @@ TEST(Sharpen, RimsOfCombinedShapesAreManifold) {
   const std::vector<SourceMesh> sources = {{first.mesh(), {}}, {second.mesh(), {}}};
   for (const SetOperation operation :
        {SetOperation::kUnion, SetOperation::kIntersection, SetOperation::kDifference}) {
-    const Octree tree = combine(tree_of(first), tree_of(second), operation, Progress(), 1);
+    const Octree tree = combine(tree_of(first), tree_of(second), operation, prefilter::Run(1));
     const TracedMesh traced = contour_traced(tree.cells, tree.bounds, sharp(sources));
     expect_sound(traced.mesh);
     ASSERT_EQ(traced.origins.size(), traced.mesh.triangles.size());

@@ -45,7 +45,7 @@ const auto kAnywhere = [](const Vector3&) { return true; };
 TEST(SmoothStairs, ARidgeIsEven) {
   FacetedMesh mesh = stairs();
   const FacetedMesh before = mesh;
-  smooth_stairs(1.0, kAnywhere, false, Progress(), 2, &mesh);
+  smooth_stairs(1.0, kAnywhere, false, prefilter::Run(2), &mesh);
   for (int y = 6; y <= kWidth - 6; ++y) {
     const Vector3& p = mesh.positions[ridge_vertex(y)];
     EXPECT_NEAR(p[0], kWidth / 2, 0.15);
@@ -68,7 +68,7 @@ TEST(SmoothStairs, MoveOnlyTheRidgeIfNothingIsFree) {
   FacetedMesh mesh = stairs();
   const FacetedMesh before = mesh;
   smooth_stairs(
-      1.0, [](const Vector3&) { return false; }, false, Progress(), 2, &mesh);
+      1.0, [](const Vector3&) { return false; }, false, prefilter::Run(2), &mesh);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     // Vertices with triangles on both sides are within 1.5 cells of the ridge.
     if (std::abs(before.positions[v][0] - kWidth / 2) > 1.5) {
@@ -84,23 +84,23 @@ TEST(SmoothStairs, KeepPlacedAndFlatVertices) {
   FacetedMesh mesh = stairs();
   const FacetedMesh before = mesh;
   mesh.kinds.assign(mesh.positions.size(), VertexKind::kEdge);
-  smooth_stairs(1.0, kAnywhere, false, Progress(), 1, &mesh);
+  smooth_stairs(1.0, kAnywhere, false, prefilter::Run(1), &mesh);
   EXPECT_EQ(mesh.positions, before.positions);
   mesh.kinds.clear();
   smooth_stairs(
-      1.0, [](const Vector3&) { return false; }, true, Progress(), 1, &mesh);
+      1.0, [](const Vector3&) { return false; }, true, prefilter::Run(1), &mesh);
   EXPECT_EQ(mesh.positions, before.positions);
   FacetedMesh flat = before;
   for (Vector3& p : flat.positions) p[2] = 0.25 * p[0];
   const std::vector<Vector3> plane = flat.positions;
-  smooth_stairs(1.0, kAnywhere, false, Progress(), 1, &flat);
+  smooth_stairs(1.0, kAnywhere, false, prefilter::Run(1), &flat);
   EXPECT_EQ(flat.positions, plane);
 }
 
 TEST(SmoothStairs, AvoidObstacles) {
   const FacetedMesh before = stairs();
   FacetedMesh mesh = before;
-  smooth_stairs(1.0, kAnywhere, false, Progress(), 1, &mesh);
+  smooth_stairs(1.0, kAnywhere, false, prefilter::Run(1), &mesh);
   std::size_t at = ridge_vertex(6);
   const auto drop = [&](std::size_t v) { return before.positions[v][2] - mesh.positions[v][2]; };
   for (int y = 7; y <= kWidth - 6; ++y) {
@@ -118,10 +118,10 @@ TEST(SmoothStairs, AvoidObstacles) {
   both.triangles.push_back({first, first + 1, first + 2});
   both.kinds.assign(both.positions.size(), VertexKind::kSurface);
   std::fill(both.kinds.end() - 3, both.kinds.end(), VertexKind::kEdge);
-  smooth_stairs(1.0, kAnywhere, false, Progress(), 1, &both);
+  smooth_stairs(1.0, kAnywhere, false, prefilter::Run(1), &both);
   const MeshView<std::int32_t> view{both.positions, both.triangles};
   EXPECT_TRUE(near_intersections(view, 0, std::vector<std::uint8_t>(both.triangles.size(), 1), 2.0,
-                                 Progress(), 1)
+                                 prefilter::Run(1))
                   .empty());
   // Vertices far from it are smoothed as before.
   EXPECT_EQ(both.positions[ridge_vertex(kWidth - 2)], mesh.positions[ridge_vertex(kWidth - 2)]);

@@ -100,7 +100,7 @@ std::vector<std::int32_t> connected(std::size_t count, const AreJoined& are_join
 TEST(SmoothRegions, FindTheFirstVertexAtEachPosition) {
   Source source = cube_of_sides(3);
   const WeldedMeshes welded = source.welded();
-  const std::vector<std::int32_t> firsts = first_places(welded.positions, Progress(), 2);
+  const std::vector<std::int32_t> firsts = first_places(welded.positions, prefilter::Run(2));
   for (std::size_t v = 0; v < firsts.size(); ++v) {
     std::size_t expected = 0;
     while (source.positions[expected] != source.positions[v]) ++expected;
@@ -119,7 +119,7 @@ TEST(SmoothRegions, EqualConnectedComponents) {
       source.groups.push_back(t > 100 ? 1 : 0);
     }
     WeldedMeshes welded = source.welded();
-    const SmoothRegions found = join_smooth(kNoFacets, Progress(), 3, &welded);
+    const SmoothRegions found = join_smooth(kNoFacets, prefilter::Run(3), &welded);
     const auto shared = [&](std::size_t t, std::size_t u) {
       std::vector<std::int64_t> both;
       for (const std::int64_t v : source.triangles[t]) {
@@ -164,12 +164,13 @@ TEST(SmoothRegions, SeparateTheSidesOfACube) {
   // Nothing is connected until vertices at equal positions are welded.
   const Source source = cube_of_sides(4);
   WeldedMeshes welded = source.welded();
-  const SmoothRegions found = join_smooth(kNoFacets, Progress(), 2, &welded);
+  const SmoothRegions found = join_smooth(kNoFacets, prefilter::Run(2), &welded);
   EXPECT_FALSE(welded.firsts.empty());
   EXPECT_EQ(found.region_count, 6);
   EXPECT_EQ(found.part_count, 1);
   EXPECT_EQ(found.walls.size(), 12U * 4U);
-  const SourceRegions regions = find_regions(source.meshes(), RootFrame(kUnit), 0.5, Progress(), 1);
+  const SourceRegions regions =
+      find_regions(source.meshes(), RootFrame(kUnit), 0.5, prefilter::Run(1));
   EXPECT_EQ(regions.borders.size(), 12U * 4U);
   EXPECT_EQ(regions.corners.size(), 8U);
   for (const RegionCorner& corner : regions.corners) {
@@ -199,15 +200,15 @@ TEST(SmoothRegions, AreWideFacetsWhereEdgesAreBlunt) {
   // Edges of 5.7 degrees, of 0.5 degrees in total, and of 5.7 again next to rows 0.2 wide.
   const Source source = ramp({{0, 0}, {4, 0}, {8, 0.4}, {12, 0.835}, {12.2, 0.835}, {12.4, 0.8}});
   WeldedMeshes welded = source.welded();
-  EXPECT_EQ(join_smooth(kNoFacets, Progress(), 1, &welded).region_count, 1);
-  SmoothRegions regions = join_smooth(1.5, Progress(), 2, &welded);
+  EXPECT_EQ(join_smooth(kNoFacets, prefilter::Run(1), &welded).region_count, 1);
+  SmoothRegions regions = join_smooth(1.5, prefilter::Run(2), &welded);
   EXPECT_EQ(regions.region_count, 3);
   EXPECT_EQ(regions.labels, (std::vector<std::int32_t>{0, 0, 1, 1, 1, 1, 2, 2, 2, 2}));
   ASSERT_EQ(regions.walls.size(), 2U);
   EXPECT_TRUE(regions.walls[0].is_crease && regions.walls[1].is_crease);
   // The rows are too narrow for an edge of their own.
   const RegionAreas areas =
-      measure_regions(welded, regions.region_count, Progress(), &regions.labels);
+      measure_regions(welded, regions.region_count, prefilter::Run(), &regions.labels);
   join_small(welded, areas.regions, 0.1, 1.0, &regions);
   EXPECT_EQ(regions.labels, (std::vector<std::int32_t>{0, 0, 1, 1, 1, 1, 1, 1, 1, 1}));
   const std::vector<RegionBorder> borders = find_borders(welded, 1.0, &regions);
@@ -220,7 +221,7 @@ TEST(SmoothRegions, RoundOffEdgesThatHardlyStandOut) {
   const auto regions_of = [](double rise) {
     const Source source = ramp({{0, 0}, {2.2, 0}, {4.4, rise}});
     WeldedMeshes welded = source.welded();
-    return join_smooth(1.5, Progress(), 1, &welded).region_count;
+    return join_smooth(1.5, prefilter::Run(1), &welded).region_count;
   };
   EXPECT_EQ(regions_of(0.1), 1);
   EXPECT_EQ(regions_of(0.44), 2);
@@ -233,10 +234,10 @@ TEST(RegionBorders, GiveSmallRegionsToTheNeighborWithTheLongestWall) {
                       {9, 9, 1}, {9, 9.5, 1}, {0, 9.2, 1}, {5, 20, 9}};
   source.triangles = {{0, 1, 2}, {0, 2, 3}, {3, 2, 5}, {3, 5, 4}, {4, 5, 6}, {4, 6, 7}, {7, 6, 8}};
   WeldedMeshes welded = source.welded();
-  SmoothRegions regions = join_smooth(kNoFacets, Progress(), 1, &welded);
+  SmoothRegions regions = join_smooth(kNoFacets, prefilter::Run(1), &welded);
   ASSERT_EQ(regions.region_count, 4);
   const RegionAreas areas =
-      measure_regions(welded, regions.region_count, Progress(), &regions.labels);
+      measure_regions(welded, regions.region_count, prefilter::Run(), &regions.labels);
   EXPECT_NEAR(areas.regions[0], 81.0, 1e-12);
   EXPECT_NEAR(areas.regions[1], 9.0, 1e-12);
   EXPECT_NEAR(areas.regions[2], 9.0 * 0.5 * (0.5 + 0.2), 1e-12);
@@ -251,8 +252,8 @@ TEST(RegionBorders, IgnoreTrianglesWithoutArea) {
   Source source = terrain(2, [](int, int) { return 0.0; });
   source.triangles.push_back({0, 1, 1});
   WeldedMeshes welded = source.welded();
-  SmoothRegions regions = join_smooth(kNoFacets, Progress(), 1, &welded);
-  measure_regions(welded, regions.region_count, Progress(), &regions.labels);
+  SmoothRegions regions = join_smooth(kNoFacets, prefilter::Run(1), &welded);
+  measure_regions(welded, regions.region_count, prefilter::Run(), &regions.labels);
   EXPECT_EQ(regions.labels.back(), -1);
   EXPECT_EQ(regions.labels.front(), 0);
 }
@@ -320,9 +321,9 @@ TEST(RegionCorners, IncludeTheTipsOfCones) {
       source.triangles.push_back({0, 1 + i, 1 + (i + 1) % kAround});
     }
     WeldedMeshes welded = source.welded();
-    SmoothRegions regions = join_smooth(kNoFacets, Progress(), 1, &welded);
+    SmoothRegions regions = join_smooth(kNoFacets, prefilter::Run(1), &welded);
     EXPECT_EQ(regions.region_count, 1);
-    const RegionAreas areas = measure_regions(welded, 1, Progress(), &regions.labels);
+    const RegionAreas areas = measure_regions(welded, 1, prefilter::Run(), &regions.labels);
     std::vector<std::uint8_t> is_on_wall(source.positions.size(), 1);
     is_on_wall[0] = 0;
     const auto found = [&](double least) {

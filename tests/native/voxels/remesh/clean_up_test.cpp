@@ -76,7 +76,7 @@ bool are_some_of(const std::vector<Vector3>& some, const std::vector<Vector3>& a
 
 TEST(CleanUp, KeepsTheShapeAndWidensAngles) {
   const FacetedMesh before = sphere(24);
-  const FacetedMesh after = clean_up(before, {0.01}, Progress(), 1);
+  const FacetedMesh after = clean_up(before, {0.01}, prefilter::Run(1));
   EXPECT_EQ(fault_of(plain(after)), "");
   EXPECT_NEAR(volume_of(plain(after)), volume_of(plain(before)), 0.005 * volume_of(plain(before)));
   EXPECT_GT(narrow_share(before), 0.1);
@@ -86,11 +86,11 @@ TEST(CleanUp, KeepsTheShapeAndWidensAngles) {
 
 TEST(CleanUp, IsTheSameForAnyNumberOfThreads) {
   const FacetedMesh before = sphere(150);  // several patches
-  const FacetedMesh after = clean_up(before, {0.01}, Progress(), 1);
+  const FacetedMesh after = clean_up(before, {0.01}, prefilter::Run(1));
   EXPECT_LT(narrow_share(after), 0.001);
   EXPECT_EQ(fault_of(plain(after)), "");
   for (const int threads : {2, 3}) {
-    const FacetedMesh other = clean_up(before, {0.01}, Progress(), threads);
+    const FacetedMesh other = clean_up(before, {0.01}, prefilter::Run(threads));
     EXPECT_EQ(other.positions, after.positions);
     EXPECT_EQ(other.triangles, after.triangles);
   }
@@ -106,14 +106,14 @@ TEST(CleanUp, AddsNoIntersectionsToNoise) {
       const auto [low, high] = std::minmax({x, y, z});
       return low < 2 || high > 21 ? 0.0 : value;
     });
-    ASSERT_TRUE(
-        intersecting_triangles({before.positions, before.triangles}, {}, Progress(), 2).empty());
-    const FacetedMesh after = clean_up(before, {0.01}, Progress(), 2);
+    ASSERT_TRUE(intersecting_triangles({before.positions, before.triangles}, {}, prefilter::Run(2))
+                    .empty());
+    const FacetedMesh after = clean_up(before, {0.01}, prefilter::Run(2));
     EXPECT_EQ(fault_of(plain(after)), "");
     EXPECT_LT(after.triangles.size(), before.triangles.size());
     EXPECT_TRUE(
-        intersecting_triangles({after.positions, after.triangles}, {}, Progress(), 2).empty());
-    EXPECT_EQ(clean_up(before, {0.01}, Progress(), 1).triangles, after.triangles);
+        intersecting_triangles({after.positions, after.triangles}, {}, prefilter::Run(2)).empty());
+    EXPECT_EQ(clean_up(before, {0.01}, prefilter::Run(1)).triangles, after.triangles);
   }
 }
 
@@ -126,24 +126,24 @@ TEST(CleanUp, MakesNoSecondEdgeBetweenTwoVertices) {
   before.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {2, 1, 5},
                       {1, 4, 5}, {4, 2, 5}, {3, 2, 6}, {2, 4, 6}, {4, 3, 6}};
   ASSERT_EQ(fault_of(plain(before)), "");
-  EXPECT_EQ(fault_of(plain(clean_up(before, {0.01}, Progress(), 1))), "");
+  EXPECT_EQ(fault_of(plain(clean_up(before, {0.01}, prefilter::Run(1)))), "");
 }
 
 TEST(CleanUp, KeepsATetrahedron) {
   FacetedMesh thin;
   thin.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0.01, 0}, {0.5, 0, 1}};
   thin.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-  EXPECT_EQ(clean_up(thin, {0.01}, Progress(), 1).triangles, thin.triangles);
-  EXPECT_TRUE(clean_up({}, {0.01}, Progress(), 2).triangles.empty());
+  EXPECT_EQ(clean_up(thin, {0.01}, prefilter::Run(1)).triangles, thin.triangles);
+  EXPECT_TRUE(clean_up({}, {0.01}, prefilter::Run(2)).triangles.empty());
 }
 
 TEST(CleanUp, IsTheSameAtAnyScale) {
   const FacetedMesh before = sphere(20);
-  const FacetedMesh after = clean_up(before, {0.01}, Progress(), 1);
+  const FacetedMesh after = clean_up(before, {0.01}, prefilter::Run(1));
   for (const double scale : {0x1p-200, 0x1p200}) {
     FacetedMesh scaled = before;
     for (Vector3& p : scaled.positions) p = {scale * p[0], scale * p[1], scale * p[2]};
-    EXPECT_EQ(clean_up(scaled, {0.01 * scale}, Progress(), 1).triangles, after.triangles);
+    EXPECT_EQ(clean_up(scaled, {0.01 * scale}, prefilter::Run(1)).triangles, after.triangles);
   }
 }
 
@@ -224,7 +224,7 @@ std::map<std::int32_t, double> areas_of(const FacetedMesh& mesh) {
 
 TEST(CleanUp, KeepsStraightCreasesAndLabels) {
   const Prism made = prism(uneven_heights(), 5, 0.0);
-  const FacetedMesh after = clean_up(made.mesh, {1e-6}, Progress(), 2);
+  const FacetedMesh after = clean_up(made.mesh, {1e-6}, prefilter::Run(2));
   ASSERT_EQ(fault_of(plain(made.mesh)), "");
   EXPECT_EQ(fault_of(plain(after)), "");
   EXPECT_EQ(after.kinds.size(), after.positions.size());
@@ -248,8 +248,8 @@ TEST(CleanUp, MovesCreasesNoFartherThanAllowed) {
     return points;
   };
   // Every other point of the crease at angle 0 protrudes by 0.01.
-  const FacetedMesh kept = clean_up(made.mesh, {1e-4}, Progress(), 1);
-  const FacetedMesh moved = clean_up(made.mesh, {0.05}, Progress(), 1);
+  const FacetedMesh kept = clean_up(made.mesh, {1e-4}, prefilter::Run(1));
+  const FacetedMesh moved = clean_up(made.mesh, {0.05}, prefilter::Run(1));
   const auto out = [&](const FacetedMesh& mesh) {
     const std::vector<Vector3> points = crease_points(mesh);
     return std::count_if(points.begin(), points.end(),
@@ -284,12 +284,12 @@ double largest_distance(const FacetedMesh& mesh, const FacetedMesh& other) {
 
 TEST(CleanUp, MovesTheSurfaceNoFartherThanAllowed) {
   const FacetedMesh before = sphere(12);
-  const FacetedMesh free = clean_up(before, {0.01}, Progress(), 1);
+  const FacetedMesh free = clean_up(before, {0.01}, prefilter::Run(1));
   EXPECT_GT(largest_distance(before, free), 0.05);
-  EXPECT_EQ(clean_up(before, {0.01, 0.0}, Progress(), 1).triangles, before.triangles);
+  EXPECT_EQ(clean_up(before, {0.01, 0.0}, prefilter::Run(1)).triangles, before.triangles);
   double share = narrow_share(before);
   for (const double height : {0.003, 0.01}) {
-    const FacetedMesh after = clean_up(before, {0.01, height}, Progress(), 1);
+    const FacetedMesh after = clean_up(before, {0.01, height}, prefilter::Run(1));
     // Two changes may overlap.
     EXPECT_LT(largest_distance(before, after), 2.0 * height);
     EXPECT_LT(largest_distance(after, before), 2.0 * height);
@@ -302,13 +302,13 @@ TEST(CleanUp, MovesTheSurfaceNoFartherThanAllowed) {
 TEST(CleanUp, KeepsCorners) {
   FacetedMesh before = sphere(24);
   before.kinds.assign(before.positions.size(), VertexKind::kCorner);
-  const FacetedMesh after = clean_up(before, {1.0}, Progress(), 1);
+  const FacetedMesh after = clean_up(before, {1.0}, prefilter::Run(1));
   EXPECT_EQ(after.positions, before.positions);
 }
 
 TEST(CleanUp, CanBeCancelled) {
-  const Progress progress([](double) { return false; });
-  EXPECT_THROW(clean_up(sphere(24), {0.01}, progress, 2), Error);
+  const prefilter::Run run([](double) { return false; });
+  EXPECT_THROW(clean_up(sphere(24), {0.01}, run.with_threads(2)), Error);
 }
 
 }  // namespace

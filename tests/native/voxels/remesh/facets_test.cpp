@@ -45,7 +45,7 @@ TEST(PatchDivision, GivesEachTriangleToOnePatchAndOwnersToVertices) {
   std::vector<PatchDivision> all;
   for (const int number : {0, 1, 2}) {
     const PatchDivision made =
-        divide_into_patches(mesh.positions, mesh.triangles, number, Progress(), 1);
+        divide_into_patches(mesh.positions, mesh.triangles, number, prefilter::Run(1));
     EXPECT_EQ(made.count(), 4U);
     std::vector<std::uint32_t> order = made.order;
     std::sort(order.begin(), order.end());
@@ -67,7 +67,7 @@ TEST(PatchDivision, GivesEachTriangleToOnePatchAndOwnersToVertices) {
     EXPECT_LT(shared, 8U * 160U);  // borders are short: patches are compact
     EXPECT_GT(shared, 100U);
     const PatchDivision other =
-        divide_into_patches(mesh.positions, mesh.triangles, number, Progress(), 3);
+        divide_into_patches(mesh.positions, mesh.triangles, number, prefilter::Run(3));
     EXPECT_EQ(other.order, made.order);
     EXPECT_EQ(other.owners, made.owners);
     all.push_back(made);
@@ -86,7 +86,8 @@ TEST(PatchDivision, GivesEachTriangleToOnePatchAndOwnersToVertices) {
 TEST(PatchDivision, IsOnePatchForSmallMeshes) {
   Grid mesh = grid(4);
   mesh.positions.push_back({9, 9, 9});  // has no triangle
-  const PatchDivision made = divide_into_patches(mesh.positions, mesh.triangles, 5, Progress(), 2);
+  const PatchDivision made =
+      divide_into_patches(mesh.positions, mesh.triangles, 5, prefilter::Run(2));
   EXPECT_EQ(made.count(), 1U);
   EXPECT_EQ(made.owners.back(), PatchDivision::kUnowned);
   EXPECT_EQ(std::count(made.owners.begin(), made.owners.end(), 0), 25);
@@ -108,7 +109,7 @@ TEST(Facets, SurviveDivisionIntoPatches) {
     before.point_ends.push_back(static_cast<std::uint32_t>(before.points.size()));
   }
   const PatchDivision division =
-      divide_into_patches(mesh.positions, mesh.triangles, 1, Progress(), 1);
+      divide_into_patches(mesh.positions, mesh.triangles, 1, prefilter::Run(1));
   std::vector<std::int32_t> places(mesh.positions.size(), 0);
   Facets after;
   for (std::size_t patch = 0; patch < division.count(); ++patch) {

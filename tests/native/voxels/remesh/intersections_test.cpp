@@ -21,7 +21,8 @@ using Whole = std::array<std::int64_t, 3>;
 
 Pairs pairs_of(const TriangleMesh& mesh, int threads = 1,
                const std::vector<std::uint8_t>& is_suspect = {}) {
-  return intersecting_triangles({mesh.positions, mesh.triangles}, is_suspect, Progress(), threads);
+  return intersecting_triangles({mesh.positions, mesh.triangles}, is_suspect,
+                                prefilter::Run(threads));
 }
 
 Whole minus(const Whole& a, const Whole& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -235,8 +236,9 @@ TEST(IntersectingTriangles, AreNoneWithoutTriangles) {
 
 TEST(IntersectingTriangles, CanBeCancelled) {
   const TriangleMesh mesh = sheet(40, 0.0);
-  const Progress progress([](double) { return false; });
-  EXPECT_THROW(intersecting_triangles({mesh.positions, mesh.triangles}, {}, progress, 2), Error);
+  const prefilter::Run run([](double) { return false; });
+  EXPECT_THROW(intersecting_triangles({mesh.positions, mesh.triangles}, {}, run.with_threads(2)),
+               Error);
 }
 
 TEST(PlaneSide, IsExactInAnObliquePlane) {

@@ -180,7 +180,7 @@ std::map<std::int32_t, double> label_areas(const FacetedMesh& mesh) {
 void expect_sound(const FacetedMesh& mesh) {
   EXPECT_EQ(fault_of(mesh), "");
   const MeshView<std::int32_t> view{mesh.positions, mesh.triangles};
-  EXPECT_EQ(intersecting_triangles(view, {}, Progress(), 1).size(), 0U);
+  EXPECT_EQ(intersecting_triangles(view, {}, prefilter::Run(1)).size(), 0U);
 }
 
 TEST(Simplify, StaysWithinTheTolerance) {
@@ -188,7 +188,7 @@ TEST(Simplify, StaysWithinTheTolerance) {
        {Interpolant::kPlane, Interpolant::kOccupancy, Interpolant::kLinear}) {
     const FacetedMesh before = blob(16, interpolant);
     for (const double tolerance : {0.02, 0.1, 0.3, 1.0}) {
-      const FacetedMesh after = simplify(before, tolerance, Progress(), 1);
+      const FacetedMesh after = simplify(before, tolerance, prefilter::Run(1));
       expect_sound(after);
       EXPECT_LT(after.triangles.size(), before.triangles.size());
       EXPECT_LE(largest_distance(before, after, 2), tolerance);
@@ -211,7 +211,7 @@ TEST(Simplify, StaysWithinTheToleranceOnRoughSurfaces) {
     TriangleMesh mesh = contour_grid({values.data(), {kSize, kSize, kSize}}, {}, options);
     const FacetedMesh before = {std::move(mesh.positions), std::move(mesh.triangles), {}, {}};
     for (const double tolerance : {0.03, 0.1, 0.4}) {
-      const FacetedMesh after = simplify(before, tolerance, Progress(), 1);
+      const FacetedMesh after = simplify(before, tolerance, prefilter::Run(1));
       EXPECT_EQ(fault_of(after), "");
       EXPECT_LE(largest_distance(before, after, 3), tolerance);
       EXPECT_LE(largest_distance(after, before, 3), tolerance);
@@ -221,7 +221,7 @@ TEST(Simplify, StaysWithinTheToleranceOnRoughSurfaces) {
 
 TEST(Simplify, LeavesFewTrianglesOnFlatParts) {
   const FacetedMesh before = blob(32);
-  EXPECT_LT(simplify(before, 0.2, Progress(), 1).triangles.size(), before.triangles.size() / 5);
+  EXPECT_LT(simplify(before, 0.2, prefilter::Run(1)).triangles.size(), before.triangles.size() / 5);
 }
 
 TEST(Simplify, ReducesABoxToTwelveTriangles) {
@@ -232,7 +232,7 @@ TEST(Simplify, ReducesABoxToTwelveTriangles) {
     for (const int n : {1, 2, 7, 100}) {  // the last one is divided into patches
       const FacetedMesh before = box(n, x, y, z);
       ASSERT_EQ(fault_of(before), "");
-      const FacetedMesh after = simplify(before, 0.01, Progress(), 2);
+      const FacetedMesh after = simplify(before, 0.01, prefilter::Run(2));
       expect_sound(after);
       EXPECT_EQ(after.triangles.size(), 12U) << n;
       EXPECT_NEAR(volume_of(after), n * n * n, 1e-9 * n * n * n);
@@ -255,7 +255,7 @@ TEST(Simplify, KeepsTheBordersOfLabels) {
     for (std::size_t i = 0; i < 3; ++i) sum = sum + corner(before, t, i);
     if (before.labels[t] == 4 && is_second(scaled(1.0 / 3.0, sum))) before.labels[t] = 6;
   }
-  const FacetedMesh after = simplify(before, 0.05, Progress(), 1);
+  const FacetedMesh after = simplify(before, 0.05, prefilter::Run(1));
   expect_sound(after);
   EXPECT_LT(after.triangles.size(), 40U);
   const auto areas = label_areas(after);
@@ -291,7 +291,7 @@ TEST(Simplify, KeepsCreasesAlongCurves) {
     before.labels.push_back(2);
   }
   ASSERT_EQ(fault_of(before), "");
-  const FacetedMesh after = simplify(before, kTolerance, Progress(), 1);
+  const FacetedMesh after = simplify(before, kTolerance, prefilter::Run(1));
   expect_sound(after);
   EXPECT_LT(after.triangles.size(), before.triangles.size() / 4);
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> labels;
@@ -319,17 +319,18 @@ TEST(Simplify, AddsNoIntersections) {
     const bool is_within = std::max(std::abs(p[0] - 20.0), std::abs(p[1] - 20.0)) < 17.0;
     return is_within && (std::abs(p[2] - height) < 1.5 || std::abs(p[2] - height - 4.2) < 1.2);
   });
-  ASSERT_EQ(intersecting_triangles({before.positions, before.triangles}, {}, Progress(), 1).size(),
-            0U);
+  ASSERT_EQ(
+      intersecting_triangles({before.positions, before.triangles}, {}, prefilter::Run(1)).size(),
+      0U);
   for (const double tolerance : {0.5, 1.5, 4.0}) {
-    expect_sound(simplify(before, tolerance, Progress(), 2));
+    expect_sound(simplify(before, tolerance, prefilter::Run(2)));
   }
 }
 
 TEST(Simplify, KeepsAClosedManifoldForAnyTolerance) {
   const FacetedMesh before = blob(24);
   for (const double tolerance : {1e-300, 1e-12, 10.0, 1e6, 1e300}) {
-    const FacetedMesh after = simplify(before, tolerance, Progress(), 1);
+    const FacetedMesh after = simplify(before, tolerance, prefilter::Run(1));
     expect_sound(after);
     EXPECT_GE(after.triangles.size(), 4U);
   }
@@ -337,11 +338,11 @@ TEST(Simplify, KeepsAClosedManifoldForAnyTolerance) {
 
 TEST(Simplify, IsScaleInvariant) {
   const FacetedMesh before = blob(20);
-  const FacetedMesh expected = simplify(before, 0.25, Progress(), 1);
+  const FacetedMesh expected = simplify(before, 0.25, prefilter::Run(1));
   for (const int exponent : {-60, 100}) {
     FacetedMesh moved = before;
     for (Vector3& p : moved.positions) p = scaled(std::ldexp(1.0, exponent), p);
-    EXPECT_EQ(simplify(moved, std::ldexp(0.25, exponent), Progress(), 1).triangles,
+    EXPECT_EQ(simplify(moved, std::ldexp(0.25, exponent), prefilter::Run(1)).triangles,
               expected.triangles);
   }
 }
@@ -349,36 +350,36 @@ TEST(Simplify, IsScaleInvariant) {
 TEST(Simplify, IsTheSameForAnyNumberOfThreads) {
   const FacetedMesh before = blob(72);
   ASSERT_GT(before.triangles.size(), 20000U);  // several patches
-  const FacetedMesh one = simplify(before, 0.1, Progress(), 1);
+  const FacetedMesh one = simplify(before, 0.1, prefilter::Run(1));
   expect_sound(one);
-  const FacetedMesh other = simplify(before, 0.1, Progress(), 3);
+  const FacetedMesh other = simplify(before, 0.1, prefilter::Run(3));
   EXPECT_EQ(one.positions, other.positions);
   EXPECT_EQ(one.triangles, other.triangles);
 }
 
 TEST(Simplify, KeepsMinimalMeshes) {
-  EXPECT_TRUE(simplify({}, 1.0, Progress(), 1).triangles.empty());
+  EXPECT_TRUE(simplify({}, 1.0, prefilter::Run(1)).triangles.empty());
   FacetedMesh tetrahedron;
   tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   tetrahedron.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-  EXPECT_EQ(simplify(tetrahedron, 1e9, Progress(), 1).triangles, tetrahedron.triangles);
+  EXPECT_EQ(simplify(tetrahedron, 1e9, prefilter::Run(1)).triangles, tetrahedron.triangles);
   const FacetedMesh before = blob(16);
-  const FacetedMesh same = simplify(before, 0.0, Progress(), 1);
+  const FacetedMesh same = simplify(before, 0.0, prefilter::Run(1));
   EXPECT_EQ(same.positions, before.positions);
   EXPECT_EQ(same.triangles, before.triangles);
 }
 
 TEST(Simplify, RefusesInvalidTolerances) {
   for (const double tolerance : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    EXPECT_THROW(simplify(blob(8), tolerance, Progress(), 1), Error);
+    EXPECT_THROW(simplify(blob(8), tolerance, prefilter::Run(1)), Error);
   }
 }
 
 TEST(Simplify, StopsWhenAsked) {
   const FacetedMesh before = blob(40);
   int calls = 0;
-  const Progress progress([&](double) { return ++calls < 2; });
-  EXPECT_THROW(simplify(before, 0.1, progress, 2), Error);
+  const prefilter::Run run([&](double) { return ++calls < 2; });
+  EXPECT_THROW(simplify(before, 0.1, run.with_threads(2)), Error);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ FacetedMesh strip(std::int32_t count, std::int32_t first = 0) {
 TEST(SpreadLabels, TheNearerLabelWins) {
   FacetedMesh mesh = strip(7);
   mesh.labels = {5, kNoLabel, kNoLabel, kNoLabel, kNoLabel, kNoLabel, 2};
-  EXPECT_EQ(spread_labels(&mesh, 6, Progress()), 0);
+  EXPECT_EQ(spread_labels(&mesh, 6, prefilter::Run()), 0);
   EXPECT_EQ(mesh.labels, (std::vector<std::int32_t>{5, 5, 5, 5, 2, 2, 2}));
 }
 
@@ -43,7 +43,7 @@ TEST(SpreadLabels, PartsWithoutAnyGetNewOnes) {
   mesh.positions.resize(other.positions.size());
   mesh.triangles.insert(mesh.triangles.end(), other.triangles.begin(), other.triangles.end());
   mesh.labels = {kNoLabel, 1, kNoLabel};
-  EXPECT_EQ(spread_labels(&mesh, 4, Progress()), 1);
+  EXPECT_EQ(spread_labels(&mesh, 4, prefilter::Run()), 1);
   EXPECT_EQ(mesh.labels, (std::vector<std::int32_t>{1, 1, 1, 4, 4}));
 }
 
@@ -51,14 +51,14 @@ TEST(SpreadLabels, PartsWithoutAnyGetNewOnes) {
 TEST(SpreadLabels, PairsTrianglesAtAnEdge) {
   FacetedMesh mesh = mesh_of(6, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {1, 0, 5}});
   mesh.labels = {kNoLabel, 7, 3, kNoLabel};
-  EXPECT_EQ(spread_labels(&mesh, 8, Progress()), 0);
+  EXPECT_EQ(spread_labels(&mesh, 8, prefilter::Run()), 0);
   EXPECT_EQ(mesh.labels, (std::vector<std::int32_t>{7, 7, 3, 3}));
 }
 
 TEST(SpreadLabels, OneVertexIsNotEnough) {
   FacetedMesh mesh = mesh_of(5, {{0, 1, 2}, {0, 3, 4}});
   mesh.labels = {0, kNoLabel};
-  EXPECT_EQ(spread_labels(&mesh, 1, Progress()), 1);
+  EXPECT_EQ(spread_labels(&mesh, 1, prefilter::Run()), 1);
   EXPECT_EQ(mesh.labels, (std::vector<std::int32_t>{0, 1}));
 }
 

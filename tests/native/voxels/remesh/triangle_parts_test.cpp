@@ -33,7 +33,7 @@ std::vector<Triangle> soup(std::int32_t vertices, std::size_t count, unsigned se
 TEST(TriangleParts, AlongVerticesContainEachTriangleOnceInOrder) {
   constexpr std::int32_t kVertices = 50000;  // four parts of 2^14
   const std::vector<Triangle> triangles = soup(kVertices, 90000, 1);
-  const TriangleParts parts = parts_along_vertices(triangles, kVertices, Progress(), 1);
+  const TriangleParts parts = parts_along_vertices(triangles, kVertices, prefilter::Run(1));
   ASSERT_EQ(parts.count(), 4U);
   std::vector<std::uint32_t> expected;
   for (std::int32_t part = 0; part < 4; ++part) {
@@ -45,13 +45,13 @@ TEST(TriangleParts, AlongVerticesContainEachTriangleOnceInOrder) {
     EXPECT_EQ(parts.begins[static_cast<std::size_t>(part) + 1], expected.size());
   }
   EXPECT_EQ(parts.triangles, expected);
-  EXPECT_EQ(parts_along_vertices(triangles, kVertices, Progress(), 3).triangles, expected);
+  EXPECT_EQ(parts_along_vertices(triangles, kVertices, prefilter::Run(3)).triangles, expected);
   const std::vector<std::uint32_t> numbers = parts.part_numbers(triangles.size() + 1, 77);
   EXPECT_EQ(numbers.back(), 77U);
   EXPECT_EQ(numbers[parts.part(2)[5]], 2U);
 
   std::vector<std::uint32_t> owners(kVertices, EditedMesh::kUnowned);
-  find_owners(parts, triangles, Progress(), 2, &owners);
+  find_owners(parts, triangles, prefilter::Run(2), &owners);
   std::vector<std::set<std::uint32_t>> all(kVertices);
   for (std::uint32_t part = 0; part < 4; ++part) {
     for (const std::uint32_t t : parts.part(part)) {

@@ -51,7 +51,7 @@ TEST(TriangleTree, HasAllTrianglesOnceInBoxesAroundThem) {
     std::vector<std::uint8_t> is_suspect(count, 0);
     for (std::size_t t = 0; t < count; t += 3) is_suspect[t] = 1;
     const TriangleTree tree =
-        build_tree({made.positions, made.triangles}, is_suspect, made.box, Progress(), 2);
+        build_tree({made.positions, made.triangles}, is_suspect, made.box, prefilter::Run(2));
     std::multiset<std::uint32_t> found;
     for (std::size_t i = 0; i < tree.leaves.size(); ++i) {
       const TriangleLeaf& leaf = tree.leaves[i];
@@ -84,7 +84,7 @@ TEST(TriangleTree, FindsTheLeavesThatOverlapOne) {
       is_suspect[t] = made.positions[3 * t][0] < 0.0 || t % every == 0 ? 1 : 0;
     }
     const TriangleTree tree =
-        build_tree({made.positions, made.triangles}, is_suspect, made.box, Progress(), 1);
+        build_tree({made.positions, made.triangles}, is_suspect, made.box, prefilter::Run(1));
     NearLeaves near;
     std::size_t left_out = 0;
     for (std::size_t i = 0; i < tree.leaves.size(); ++i) {

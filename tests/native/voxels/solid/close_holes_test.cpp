@@ -48,7 +48,7 @@ std::size_t imbalance(const std::vector<Vector3>& positions, const Triangles& tr
 CloseHolesOptions with(HoleMethod method) {
   CloseHolesOptions options;
   options.method = method;
-  options.threads = 1;
+  options.run = prefilter::Run(1);
   return options;
 }
 
@@ -158,9 +158,9 @@ TEST(CloseHoles, IsTheSameForAnyNumberOfThreads) {
   std::shuffle(triangles.begin(), triangles.end(), random);
   triangles.resize(triangles.size() - 300);
   CloseHolesOptions options;
-  options.threads = 1;
+  options.run = prefilter::Run(1);
   const Caps one = close_holes({mesh.positions, triangles}, options);
-  options.threads = 3;
+  options.run = prefilter::Run(3);
   const Caps three = close_holes({mesh.positions, triangles}, options);
   EXPECT_EQ(one.positions, three.positions);
   EXPECT_EQ(one.triangles, three.triangles);
@@ -196,8 +196,7 @@ TEST(CloseHoles, StopsWithinLongLoops) {
   positions.push_back({0.0, 0.0, -2.0});
   int calls = 0;
   CloseHolesOptions options;
-  options.threads = 1;
-  options.progress = Progress([&](double) { return ++calls < 6; });
+  options.run = prefilter::Run(1, [&](double) { return ++calls < 6; });
   EXPECT_THROW(close_holes({positions, triangles}, options), Error);
   EXPECT_EQ(calls, 6);
 }

@@ -26,10 +26,10 @@ double volume_of(const TriangleMesh& mesh) {
 // Volume inside a closed mesh, measured with cells of this side.
 double filled_volume(const Mesh& mesh, double cell) {
   const MeshView<std::int32_t> view{mesh.positions, mesh.triangles};
-  const ReachGrid grid(view, cell, 0.0, Progress(), 1);
+  const ReachGrid grid(view, cell, 0.0, prefilter::Run(1));
   std::vector<bool> is_filled(grid.region_end(), false);
   for (std::size_t r = ReachGrid::kFirstRegion; r < is_filled.size(); ++r) is_filled[r] = true;
-  return volume_of(filled_regions(view, grid, is_filled, Progress(), 1));
+  return volume_of(filled_regions(view, grid, is_filled, prefilter::Run(1)));
 }
 
 TEST(FilledRegions, HaveTheVolumeOfTheMesh) {

@@ -48,12 +48,12 @@ TEST(LoopCaps, FansMeetAtTheMeanOfTheLoop) {
 // Cap of a loop of this many edges at the north pole of a sphere.
 LoopCap cap_of(const Mesh& mesh, HoleMethod method, bool is_smooth, std::size_t edges) {
   const InputMesh input{mesh.positions, mesh.triangles};
-  const BorderLoops loops = border_loops(input, Progress(), 1);
+  const BorderLoops loops = border_loops(input, prefilter::Run(1));
   EXPECT_EQ(loops.size(), 1U);
   EXPECT_EQ(loops.loop(0).size(), edges);
   const std::vector<unsigned char> is_kept(1, 1);
-  std::vector<LoopCap> caps = first_caps(input, loops, is_kept, method, Progress(), 1);
-  if (is_smooth) smooth_caps(input, loops, is_kept, Progress(), 1, &caps);
+  std::vector<LoopCap> caps = first_caps(input, loops, is_kept, method, prefilter::Run(1));
+  if (is_smooth) smooth_caps(input, loops, is_kept, prefilter::Run(1), &caps);
   // Mesh and cap together are closed, and the cap has no other border.
   std::map<std::pair<Vector3, Vector3>, int> edges_of;
   const auto add = [&](const std::array<Vector3, 3>& p) {

@@ -55,7 +55,7 @@ TEST(MeshEdges, EqualThoseOfAMap) {
     const std::vector<Vector3> positions(static_cast<std::size_t>(vertices));
     const MeshEdges expected = slow_edges(triangles);
     for (const int threads : {1, 3}) {
-      const MeshEdges found = find_mesh_edges({positions, triangles}, Progress(), threads);
+      const MeshEdges found = find_mesh_edges({positions, triangles}, prefilter::Run(threads));
       EXPECT_EQ(found.vertices, expected.vertices) << vertices;
       EXPECT_EQ(found.of_corners, expected.of_corners) << vertices;
     }
@@ -64,8 +64,8 @@ TEST(MeshEdges, EqualThoseOfAMap) {
 
 TEST(MeshEdges, RefuseInvalidTriangles) {
   const std::vector<Vector3> positions(3);
-  EXPECT_THROW(find_mesh_edges({positions, EdgeTriangles{}}, Progress(), 1), Error);
-  EXPECT_THROW(find_mesh_edges({positions, EdgeTriangles{{0, 1, 3}}}, Progress(), 1), Error);
+  EXPECT_THROW(find_mesh_edges({positions, EdgeTriangles{}}, prefilter::Run(1)), Error);
+  EXPECT_THROW(find_mesh_edges({positions, EdgeTriangles{{0, 1, 3}}}, prefilter::Run(1)), Error);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ std::vector<bool> turned(const std::vector<Box3>& boxes, bool has_none = false) 
     mesh.add(box_mesh({-9, -9, -9}, {9, 9, 9}));
     part_of.insert(part_of.end(), 12, static_cast<std::uint32_t>(parts.size()));
   }
-  return parts_to_turn({mesh.positions, mesh.triangles}, parts, part_of, Progress(), 1);
+  return parts_to_turn({mesh.positions, mesh.triangles}, parts, part_of, prefilter::Run(1));
 }
 
 using Turned = std::vector<bool>;

@@ -190,8 +190,8 @@ TEST(HollowRegions, AreBoundedByOpenPartsAndUnfilled) {
 TEST(TriangleSides, SeparateTheInsideOfABoxFromTheOutside) {
   const auto box = box_mesh({0, 0, 0}, {1, 1, 1});
   const MeshView<std::int32_t> mesh{box.positions, box.triangles};
-  const ReachGrid grid(mesh, 0.05, 0.0, Progress(), 1);
-  for (const TriangleSides& sides : sides_of_triangles(mesh, grid, Progress(), 1)) {
+  const ReachGrid grid(mesh, 0.05, 0.0, prefilter::Run(1));
+  for (const TriangleSides& sides : sides_of_triangles(mesh, grid, prefilter::Run(1))) {
     EXPECT_GT(sides.outside_front, 0.8F);  // except close to its edges
     EXPECT_EQ(sides.outside_back + sides.outside_both + sides.inside_both, 0.0F);
     EXPECT_EQ(sides.region, ReachGrid::kFirstRegion);
@@ -199,7 +199,7 @@ TEST(TriangleSides, SeparateTheInsideOfABoxFromTheOutside) {
   auto other = box;
   for (auto& t : other.triangles) std::swap(t[1], t[2]);
   const MeshView<std::int32_t> turned{other.positions, other.triangles};
-  for (const TriangleSides& sides : sides_of_triangles(turned, grid, Progress(), 1)) {
+  for (const TriangleSides& sides : sides_of_triangles(turned, grid, prefilter::Run(1))) {
     EXPECT_GT(sides.outside_back, 0.8F);
     EXPECT_EQ(sides.outside_front, 0.0F);
   }

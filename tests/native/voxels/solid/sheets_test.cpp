@@ -52,12 +52,12 @@ struct Closing {
   explicit Closing(Mesh closed)
       : mesh(std::move(closed)),
         input{mesh.positions, mesh.triangles},
-        loops(border_loops(input, Progress(), 1)),
+        loops(border_loops(input, prefilter::Run(1))),
         is_kept(loops.size(), 1),
-        caps(first_caps(input, loops, is_kept, HoleMethod::kFan, Progress(), 1)),
-        solids(drop_sheet_loops(input, loops, caps, Progress(), is_kept)) {}
+        caps(first_caps(input, loops, is_kept, HoleMethod::kFan, prefilter::Run(1))),
+        solids(drop_sheet_loops(input, loops, caps, prefilter::Run(), is_kept)) {}
   void drop_canceling_caps() {
-    prefilter::drop_canceling_caps(input, loops, caps, solids, Progress(), 1, is_kept);
+    prefilter::drop_canceling_caps(input, loops, caps, solids, prefilter::Run(1), is_kept);
   }
   std::size_t kept() const {
     return static_cast<std::size_t>(std::count(is_kept.begin(), is_kept.end(), 1));
@@ -116,13 +116,13 @@ TEST(Sheets, PartsAreCounted) {
 TEST(Sheets, SingleTrianglesStayOpen) {
   const std::vector<Vector3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const std::vector<std::array<std::int64_t, 3>> triangles = {{0, 1, 2}};
-  const BorderLoops loops = border_loops({positions, triangles}, Progress(), 1);
+  const BorderLoops loops = border_loops({positions, triangles}, prefilter::Run(1));
   ASSERT_EQ(loops.size(), 1U);
   std::vector<unsigned char> is_kept(1, 1);
   drop_single_face_loops(loops, is_kept);
   EXPECT_EQ(is_kept[0], 0);
   Mesh box = open_box({0, 0, 0}, {1, 1, 1});
-  const BorderLoops of_box = border_loops({box.positions, box.triangles}, Progress(), 1);
+  const BorderLoops of_box = border_loops({box.positions, box.triangles}, prefilter::Run(1));
   is_kept[0] = 1;
   drop_single_face_loops(of_box, is_kept);
   EXPECT_EQ(is_kept[0], 1);

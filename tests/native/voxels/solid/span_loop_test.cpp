@@ -39,7 +39,7 @@ double smallest_area(const Loop& loop, std::size_t from, std::size_t to) {
 }
 
 HolePatch span(const Loop& loop) {
-  return span_loop(loop, Loop(loop.size(), Vector3{}), Progress());
+  return span_loop(loop, Loop(loop.size(), Vector3{}), prefilter::Run());
 }
 
 // Each edge of the loop occurs once, forward; all others occur once in each direction.

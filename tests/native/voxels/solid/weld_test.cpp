@@ -60,7 +60,7 @@ TEST(DropDuplicates, KeepsTheFirstOfTheMoreFrequentOrientation) {
       expected.push_back(best->front());
     }
     std::sort(expected.begin(), expected.end());
-    const std::size_t dropped = drop_duplicates(&mesh, Progress(), 2);
+    const std::size_t dropped = drop_duplicates(&mesh, prefilter::Run(2));
     ASSERT_EQ(mesh.triangles.size(), expected.size());
     EXPECT_EQ(dropped, whole - expected.size());
     for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -73,7 +73,7 @@ TEST(DropDuplicates, KeepsTheFirstOfTheMoreFrequentOrientation) {
 TEST(WeldEqual, MapsToTheFirstVertexAtEachPosition) {
   WorkMesh mesh =
       mesh_of({{0, 0, 0}, {1, 0, 0}, {-0.0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 4}, {2, 4, 3}});
-  EXPECT_EQ(weld_equal(&mesh, Progress(), 1), 2U);
+  EXPECT_EQ(weld_equal(&mesh, prefilter::Run(1)), 2U);
   EXPECT_EQ(mesh.triangles[1], (Triangle{0, 4, 1}));
 }
 
@@ -87,14 +87,14 @@ WorkMesh two(double apart, double height) {
 TEST(WeldBorders, WeldsNearVerticesButNotCornersOfOneTriangle) {
   for (const auto& [apart, expected] : {std::pair(0.09, 2U), std::pair(0.11, 0U)}) {
     WorkMesh mesh = two(apart, 1.0);
-    EXPECT_EQ(weld_borders(&mesh, 0.1, Progress(), 1), expected) << apart;
+    EXPECT_EQ(weld_borders(&mesh, 0.1, prefilter::Run(1)), expected) << apart;
     EXPECT_EQ(mesh.triangles[1] == (Triangle{0, 1, 5}), expected == 2);
   }
   // Edges of length 1 may be shortened by a third.
   WorkMesh near = two(0.33, 2.0);
-  EXPECT_EQ(weld_borders(&near, 10.0, Progress(), 1), 2U);
+  EXPECT_EQ(weld_borders(&near, 10.0, prefilter::Run(1)), 2U);
   WorkMesh far = two(0.34, 2.0);
-  EXPECT_EQ(weld_borders(&far, 10.0, Progress(), 1), 0U);
+  EXPECT_EQ(weld_borders(&far, 10.0, prefilter::Run(1)), 0U);
 }
 
 TEST(SplitBorders, SplitsWhereFinerBordersMeetCoarserOnes) {
@@ -102,7 +102,7 @@ TEST(SplitBorders, SplitsWhereFinerBordersMeetCoarserOnes) {
   const auto splits = [](const Vector3& point, double distance) {
     WorkMesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0}, point, {0.4, 3, 0}, {0.6, 3, 0}},
                             {{1, 0, 2}, {3, 4, 5}});
-    const std::size_t count = split_borders(&mesh, distance, Progress(), 1);
+    const std::size_t count = split_borders(&mesh, distance, prefilter::Run(1));
     EXPECT_EQ(mesh.triangles.size(), 2U + count);
     double area = 0.0;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

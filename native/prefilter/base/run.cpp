@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/run.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "prefilter/base/error.h"
 
@@ -36,18 +37,25 @@ class Call {
 };
 }  // namespace
 
-Progress::Progress(Callback callback) : state_(callback ? std::make_shared<State>() : nullptr) {
+Run::Run(int threads, Callback callback)
+    : state_(callback ? std::make_shared<State>() : nullptr), threads_(threads) {
   if (state_) state_->callback = std::move(callback);
 }
 
-Progress Progress::part(double from, double to) const {
-  Progress result = *this;
+Run Run::with_threads(int threads) const {
+  Run result = *this;
+  result.threads_ = threads;
+  return result;
+}
+
+Run Run::part(double from, double to) const {
+  Run result = *this;
   result.from_ = from_ + (to_ - from_) * from;
   result.to_ = from_ + (to_ - from_) * to;
   return result;
 }
 
-void Progress::report(double fraction) const {
+void Run::report(double fraction) const {
   if (!state_) return;
   const double whole =
       std::max(state_->highest, from_ + (to_ - from_) * std::clamp(fraction, 0.0, 1.0));
@@ -59,13 +67,24 @@ void Progress::report(double fraction) const {
   if (!state_->callback(whole)) throw Error(ErrorCode::kCancelled, "cancelled");
 }
 
-void Progress::wait_while_held() const {
+void Run::wait_while_held() const {
   if (!state_) return;
   while (true) {
     const std::int64_t called_at = state_->called_at.load(std::memory_order_relaxed);
     if (called_at == 0 || now_in_ticks() - called_at < ticks(kPatience)) return;
     state_->called_at.wait(called_at);
   }
+}
+
+Stages::Stages(const Run& run, std::initializer_list<double> weights) : run_(run) {
+  double sum = 0.0;
+  for (const double weight : weights) sum += weight;
+  double before = 0.0;
+  for (const double weight : weights) {
+    begins_.push_back(before / sum);
+    before += weight;
+  }
+  begins_.push_back(1.0);
 }
 
 }  // namespace prefilter
