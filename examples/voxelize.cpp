@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
     const prefilter::Octree a = prefilter::voxelize({first.positions, first.triangles}, options);
     const prefilter::Octree b = prefilter::voxelize({second.positions, second.triangles}, options);
     const prefilter::Octree both =
-        prefilter::combine(a, b, prefilter::SetOperation::kUnion, options.run.with_threads(0));
+        prefilter::combine(a, b, prefilter::SetOperation::kUnion, options.run);
     std::printf("volume: %.6f\n", prefilter::volume(both));
 
     prefilter::ContourOptions contour;

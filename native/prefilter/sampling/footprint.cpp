@@ -23,14 +23,14 @@ double steady(double width) {
 
 // J and J J^T, scaled by the largest element of J: half the sum and half the difference of the
 // diagonal of J J^T, and its off-diagonal element.
-struct Squares {
+struct FootprintSquares {
   double largest = 0.0;
   double determinant = 0.0;  // of J
   double mean = 0.0;
   double half = 0.0;
   double beside = 0.0;
 
-  explicit Squares(const TextureJacobian& jacobian) {
+  explicit FootprintSquares(const TextureJacobian& jacobian) {
     for (const double value : jacobian) largest = std::max(largest, std::abs(value));
     if (largest == 0.0) return;
     const double xi = jacobian[0] / largest;
@@ -50,7 +50,7 @@ struct Squares {
 }  // namespace
 
 Footprint singular_values(const TextureJacobian& jacobian) {
-  const Squares squares(jacobian);
+  const FootprintSquares squares(jacobian);
   if (squares.largest == 0.0) return {0.0, 0.0, 1.0, 0.0};
   const double major = squares.larger();
   // From the determinant, to avoid cancellation.
@@ -66,7 +66,7 @@ Footprint singular_values(const TextureJacobian& jacobian) {
 }
 
 double larger_singular_value(const TextureJacobian& jacobian) {
-  const Squares squares(jacobian);
+  const FootprintSquares squares(jacobian);
   return steady(squares.larger() * squares.largest);
 }
 

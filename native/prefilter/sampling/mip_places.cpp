@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kLanes = 4;
 
-using Four = Vector<std::int32_t, kLanes>;
+using FourPlaces = Vector<std::int32_t, kLanes>;
 
 /// Base-2 logarithm of values in (1, 2]: an odd polynomial of t = (m - 1) / (m + 1) with five terms
 /// that minimize the largest relative error, 4e-9 before rounding.
@@ -33,14 +33,15 @@ inline void place_four(const double* scales, std::int32_t coarsest, int* cell_le
   Lanes scale{};
   for (int i = 0; i < kLanes; ++i) scale[i] = static_cast<float>(scales[i]);
   scale = lane_max(scale, Lanes{} + 1.0F);
-  const Four bits = std::bit_cast<Four>(scale);
+  const FourPlaces bits = std::bit_cast<FourPlaces>(scale);
   // Powers of 2 belong to the interval below them.
-  const Four exponent = ((bits - 1) >> 23) - 127;
+  const FourPlaces exponent = ((bits - 1) >> 23) - 127;
   const Lanes mantissa = std::bit_cast<Lanes>(bits - (exponent << 23));
   const Lanes fraction = lane_min(log2_of_mantissas(mantissa), Lanes{} + 1.0F);
-  const Four magnifies = exponent < 0;
-  const Four is_coarser = exponent > coarsest;
-  const Four level = select(magnifies, Four{}, select(is_coarser, Four{} + coarsest, exponent) + 1);
+  const FourPlaces magnifies = exponent < 0;
+  const FourPlaces is_coarser = exponent > coarsest;
+  const FourPlaces level =
+      select(magnifies, FourPlaces{}, select(is_coarser, FourPlaces{} + coarsest, exponent) + 1);
   const Lanes share = select(magnifies, Lanes{}, select(is_coarser, Lanes{} + 1.0F, fraction));
   std::memcpy(cell_levels, &level, sizeof level);
   std::memcpy(f, &share, sizeof share);

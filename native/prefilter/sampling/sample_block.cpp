@@ -16,7 +16,7 @@
 namespace prefilter {
 namespace {
 
-using Four = Vector<std::int32_t, 4>;
+using FourSamples = Vector<std::int32_t, 4>;
 
 // Number of samples to prefetch texels ahead, for images that exceed the caches.
 constexpr int kPrefetchedSamples = 8;
@@ -67,27 +67,27 @@ void find_subdomains(const TexelPlan& plan, const SampleBlock& block, CellPlaces
   const std::int32_t last_slice = shape.slices - 1;
   const std::int32_t per_slice = shape.subdomains_of_slice();
   const auto index = [](Lanes value, std::int32_t last) {
-    const Four indices = convert<Four>(value);
-    const Four limit = {last, last, last, last};
+    const FourSamples indices = convert<FourSamples>(value);
+    const FourSamples limit = {last, last, last, last};
     return select(indices < limit, indices, limit);
   };
   for (int begin = 0; begin < block.count; begin += 4) {
     const Lanes x = load_lanes(&places.x[begin]);
     const Lanes y = load_lanes(&places.y[begin]);
     const Lanes f = load_lanes(&block.f[begin]);
-    const Four mirror_x = x > 0.5F;
-    const Four mirror_y = y > 0.5F;
+    const FourSamples mirror_x = x > 0.5F;
+    const FourSamples mirror_y = y > 0.5F;
     const Lanes along_x = lane_min(x, 1.0F - x);
     const Lanes along_y = lane_min(y, 1.0F - y);
-    const Four swapped = along_y > along_x;
+    const FourSamples swapped = along_y > along_x;
     const Lanes larger = lane_max(along_x, along_y);
     const Lanes smaller = lane_min(along_x, along_y);
-    const Four i = index(larger * grid, last_column);
-    const Four j = index(smaller * grid, last_column);
-    const Four slice = index(f * slices, last_slice);
-    const Four subdomain = slice * per_slice + ((i * (i + 1)) >> 1) + j;
-    const Four tile = subdomain * kSymmetries - mirror_x - 2 * mirror_y - 4 * swapped;
-    Four levels;
+    const FourSamples i = index(larger * grid, last_column);
+    const FourSamples j = index(smaller * grid, last_column);
+    const FourSamples slice = index(f * slices, last_slice);
+    const FourSamples subdomain = slice * per_slice + ((i * (i + 1)) >> 1) + j;
+    const FourSamples tile = subdomain * kSymmetries - mirror_x - 2 * mirror_y - 4 * swapped;
+    FourSamples levels;
     std::memcpy(&levels, &block.cell_levels[begin], sizeof levels);
     const Lanes third = select(levels == 0, larger * smaller, f);
     std::memcpy(&places.x[begin], &larger, sizeof larger);

@@ -19,7 +19,7 @@ struct Square {
 
 /// The squares of a sample in both levels, the coarser first. For magnification both are in level
 /// 0.
-using Squares = std::array<Square, 2>;
+using TexelSquares = std::array<Square, 2>;
 
 inline void find_square(const WrappedPyramid& pyramid, int level, Pair uv, Square& square) {
   const PyramidLevel& texels = pyramid.pyramid.levels[level];
@@ -59,7 +59,7 @@ inline Channels mix_square(const Square& square, int channel) {
 }
 
 template <typename Value>
-void mix_block(const Pyramid& pyramid, const SampleBlock& block, const Squares* squares,
+void mix_block(const Pyramid& pyramid, const SampleBlock& block, const TexelSquares* squares,
                float* result) {
   constexpr float kUnit = sizeof(Value) == 1 ? 1.0F / 255.0F : 1.0F;
   for (int i = 0; i < block.count; ++i) {
@@ -78,7 +78,7 @@ void mix_block(const Pyramid& pyramid, const SampleBlock& block, const Squares* 
 
 void sample_block_trilinearly(const WrappedPyramid& pyramid, const SampleBlock& block,
                               float* result) {
-  std::array<Squares, kBlockSamples> squares;
+  std::array<TexelSquares, kBlockSamples> squares;
   for (int i = 0; i < block.count; ++i) {
     const int level = block.cell_levels[i];
     auto& [coarse, fine] = squares[i];

@@ -19,7 +19,7 @@
 namespace prefilter {
 namespace {
 
-constexpr float kHalf = 0.5F;
+constexpr float kCombineHalf = 0.5F;
 // Values within this distance of 1/2, where two surfaces share a cell, are moved this far from it.
 constexpr float kTieDistance = 1e-4F;
 // Depth of the cells that are distributed among threads.
@@ -34,7 +34,9 @@ class ValueRule {
     switch (operation_) {
       case SetOperation::kUnion: {
         const float value = std::max(a, b);
-        return is_shared && std::abs(value - kHalf) <= kTieDistance ? kHalf + kTieDistance : value;
+        return is_shared && std::abs(value - kCombineHalf) <= kTieDistance
+                   ? kCombineHalf + kTieDistance
+                   : value;
       }
       case SetOperation::kIntersection:
         return without_film(std::min(a, b), is_shared);
@@ -54,7 +56,8 @@ class ValueRule {
 
  private:
   static float without_film(float value, bool is_shared) {
-    return is_shared && std::abs(value - kHalf) <= kTieDistance ? kHalf - kTieDistance : value;
+    return is_shared && std::abs(value - kCombineHalf) <= kTieDistance ? kCombineHalf - kTieDistance
+                                                                       : value;
   }
   SetOperation operation_;
 };
@@ -166,7 +169,7 @@ CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operatio
                         int at) -> MergedCell {
     if (at == kTaskDepth) {
       tasks.push_back({of_a, of_b, {}, {}});
-      return {kHalf, false};
+      return {kCombineHalf, false};
     }
     return merger.merge_with(of_a, of_b, at, &above, [&](const Cell& x, const Cell& y, int next) {
       return self(self, x, y, next);

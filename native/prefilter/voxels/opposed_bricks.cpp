@@ -15,7 +15,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kRowsPerTask = 1 << 10;
+constexpr std::int64_t kOpposedBricksRowsPerTask = 1 << 10;
 constexpr double kCrowdedSheets = 8.0;  // number of sheets through a brick
 
 // Directions are quantized to bins: three by three on each face of a cube.
@@ -147,7 +147,8 @@ std::vector<Entry> directions_of(const MeshView<std::int32_t>& mesh,
                                  std::span<const Vector3> normals, double side, const Box& bounds,
                                  const Run& run) {
   const auto rows = static_cast<std::int64_t>(mesh.triangles.size());
-  std::vector<std::vector<Entry>> tasks(static_cast<std::size_t>(range_count(rows, kRowsPerTask)));
+  std::vector<std::vector<Entry>> tasks(
+      static_cast<std::size_t>(range_count(rows, kOpposedBricksRowsPerTask)));
   const auto find = [&](std::int64_t begin, std::int64_t end) {
     Entries entries;
     for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
@@ -159,9 +160,9 @@ std::vector<Entry> directions_of(const MeshView<std::int32_t>& mesh,
           [&](const auto& piece) { add_bricks(piece, side, bin, &entries); });
     }
     merge(entries.all());
-    tasks[static_cast<std::size_t>(begin / kRowsPerTask)] = std::move(*entries.all());
+    tasks[static_cast<std::size_t>(begin / kOpposedBricksRowsPerTask)] = std::move(*entries.all());
   };
-  parallel_ranges(rows, kRowsPerTask, run, find);
+  parallel_ranges(rows, kOpposedBricksRowsPerTask, run, find);
   std::vector<Entry> directions;
   for (std::vector<Entry>& entries : tasks) {
     directions.insert(directions.end(), entries.begin(), entries.end());

@@ -17,7 +17,7 @@
 namespace prefilter {
 namespace {
 
-constexpr float kHalf = 0.5F;
+constexpr float kSlitsHalf = 0.5F;
 constexpr float kMaxSlitOccupancy = 0.65F;  // fuller cells stay
 constexpr float kOpenedOccupancy = 0.495F;  // just empty
 constexpr int kSide = 3;                    // cells per axis of a block
@@ -97,7 +97,7 @@ bool parts_full_faces(const CellTree& cells, int depth, const LeafPlace& at) {
     LeafPlace place = at;
     place[axis] += step;
     if (other != axis) place[other] += other_step;
-    return occupancy_at(cells, depth, place) >= kHalf;
+    return occupancy_at(cells, depth, place) >= kSlitsHalf;
   };
   constexpr std::size_t kFaces = 6;
   const auto step_of = [](std::size_t face) { return face % 2 == 0 ? -1 : 1; };
@@ -125,13 +125,13 @@ bool parts_full_faces(const CellTree& cells, int depth, const LeafPlace& at) {
 // corners (G. Bertrand, Simple points, topological numbers and geodesic neighborhoods in cubic
 // grids, 1994).
 std::optional<CellParts> joined_by_center(const Block& block) {
-  const CellParts full = parts_around(2, 1, [&](int i) { return block[i] >= kHalf; });
+  const CellParts full = parts_around(2, 1, [&](int i) { return block[i] >= kSlitsHalf; });
   std::uint32_t at_faces = 0;
   for (int i = 0; i < kBlock; ++i) {
     if (full.of[i] != 0 && steps_between(i, kCenterCell) == 1) at_faces |= 1U << full.of[i];
   }
   if ((at_faces & (at_faces - 1)) == 0) return {};
-  const CellParts empty = parts_around(3, 3, [&](int i) { return block[i] < kHalf; });
+  const CellParts empty = parts_around(3, 3, [&](int i) { return block[i] < kSlitsHalf; });
   if (empty.count != 1) return {};
   return full;
 }
@@ -223,7 +223,8 @@ void open_slits(const WindingNumbers& winding, double unit, const CellTree& thic
   if (cells->depth() != depth || depth == 0) return;
   std::vector<Neck> necks;
   for_finest(*cells, [&](const LeafPlace& at, float value) {
-    if (value < kHalf || value > kMaxSlitOccupancy || !parts_full_faces(*cells, depth, at)) return;
+    if (value < kSlitsHalf || value > kMaxSlitOccupancy || !parts_full_faces(*cells, depth, at))
+      return;
     if (!thickened.levels.empty() && occupancy_at(thickened, depth, at) > 0.0F) return;
     if (joined_by_center(block_at(*cells, depth, at))) necks.push_back({at, value});
   });

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kMarginCells = 2.0;        // around the mesh
 constexpr double kMarginShare = 1.0 / 8.0;  // upper limit, as a share of the cells along an axis
-constexpr std::int64_t kRowsPerTask = 1 << 14;
+constexpr std::int64_t kVoxelizeRowsPerTask = 1 << 14;
 // Bytes per cell that the surface passes through, for blocks while they are merged and for the
 // bricks' triangles. Measured on scans: 20 to 25.
 constexpr double kBytesPerCell = 30.0;
@@ -69,9 +69,10 @@ SurfaceExtent extent_of(const RootTriangles& mesh, std::int64_t begin, std::int6
 // Throws Error if all triangles have zero area, or the tree would not fit into memory.
 void check_surface(const RootTriangles& mesh, int depth, const Run& run) {
   const auto count = static_cast<std::int64_t>(mesh.mesh.triangles.size());
-  std::vector<SurfaceExtent> parts(static_cast<std::size_t>(range_count(count, kRowsPerTask)));
-  parallel_ranges(count, kRowsPerTask, run, [&](std::int64_t begin, std::int64_t end) {
-    parts[static_cast<std::size_t>(begin / kRowsPerTask)] = extent_of(mesh, begin, end);
+  std::vector<SurfaceExtent> parts(
+      static_cast<std::size_t>(range_count(count, kVoxelizeRowsPerTask)));
+  parallel_ranges(count, kVoxelizeRowsPerTask, run, [&](std::int64_t begin, std::int64_t end) {
+    parts[static_cast<std::size_t>(begin / kVoxelizeRowsPerTask)] = extent_of(mesh, begin, end);
   });
   SurfaceExtent all;
   for (const SurfaceExtent& part : parts) {

@@ -9,7 +9,7 @@ namespace {
 
 // A cell of a tree, or within a leaf of it, and the faces of the root that it touches: bit 2 a for
 // the low face across axis a, bit 2 a + 1 for the high one.
-struct Cell {
+struct FineBorderCell {
   bool is_split;
   std::size_t block;
   float value;
@@ -20,16 +20,16 @@ class BorderRule {
  public:
   explicit BorderRule(const CellTree& tree) : tree_(tree) {}
 
-  Cell root() const { return {!tree_.levels.empty(), 0, tree_.root, 63}; }
+  FineBorderCell root() const { return {!tree_.levels.empty(), 0, tree_.root, 63}; }
 
-  bool is_split(const Cell& cell, int depth) const {
+  bool is_split(const FineBorderCell& cell, int depth) const {
     return cell.is_split || (cell.faces != 0 && cell.value > 0.0F && depth < tree_.depth());
   }
 
-  float value(const Cell& cell, int /*depth*/) const { return cell.value; }
+  float value(const FineBorderCell& cell, int /*depth*/) const { return cell.value; }
 
-  Cell octant(const Cell& cell, int depth, int o) const {
-    Cell result = cell;
+  FineBorderCell octant(const FineBorderCell& cell, int depth, int o) const {
+    FineBorderCell result = cell;
     for (int axis = 0; axis < 3; ++axis) {
       const bool is_high = ((o >> axis) & 1) != 0;
       result.faces &= ~(is_high ? 1U << (2 * axis) : 2U << (2 * axis));

@@ -21,16 +21,16 @@ namespace {
 constexpr float kMixed = 0.5F;
 
 // A cell of a tree, or within a leaf.
-struct Cell {
+struct RefineCell {
   bool is_split;
   std::size_t block;
   float value;
   LeafPlace at;
 
-  static Cell root_of(const CellTree& tree) {
+  static RefineCell root_of(const CellTree& tree) {
     return {!tree.levels.empty(), 0, tree.root, {0, 0, 0}};
   }
-  Cell octant(const CellTree& tree, int depth, int o) const {
+  RefineCell octant(const CellTree& tree, int depth, int o) const {
     const TreeLevel& level = tree.levels[static_cast<std::size_t>(depth)];
     const bool splits = level.is_split(block, o);
     return {splits, splits ? level.child(block, o) : 0, level.blocks[block][o],
@@ -42,7 +42,7 @@ struct Cell {
 class SurfaceRule {
  public:
   struct Part {
-    Cell cell;
+    RefineCell cell;
     // Within a leaf with a surface: the surface, and the position among the leaf's cells of this
     // depth.
     std::optional<LeafSurface> surface;
@@ -52,7 +52,7 @@ class SurfaceRule {
 
   SurfaceRule(const CellTree& tree, int depth) : tree_(tree), depth_(depth) {}
 
-  Part root() const { return part_of(Cell::root_of(tree_), 0); }
+  Part root() const { return part_of(RefineCell::root_of(tree_), 0); }
 
   bool is_split(const Part& part, int depth) const {
     if (!part.surface) return part.cell.is_split;
@@ -81,7 +81,7 @@ class SurfaceRule {
   }
 
  private:
-  Part part_of(const Cell& cell, int depth) const {
+  Part part_of(const RefineCell& cell, int depth) const {
     Part part{cell, std::nullopt, depth, {0, 0, 0}};
     if (!cell.is_split && depth < depth_ && is_fraction(cell.value)) {
       part.surface = LeafSurface::find(tree_, depth, cell.at, 1 << (depth_ - depth));

@@ -13,8 +13,8 @@
 namespace prefilter {
 namespace {
 
-constexpr int kSide = CellSamples::kSide;
-constexpr std::uint64_t kAll = ~std::uint64_t{0};
+constexpr int kCellSamplesSide = CellSamples::kCellSamplesSide;
+constexpr std::uint64_t kCellSamplesAll = ~std::uint64_t{0};
 
 // Compositing stops at this mean transmittance, a quarter of 1/255; together with the sampling
 // error the result stays within 1/255.
@@ -84,7 +84,7 @@ void transpose_bytes(const std::uint64_t* from, std::uint64_t* to) {
 Point2 position_of(int block, int sample) {
   const int column = 8 * (block % 8) + sample % 8;
   const int row = 8 * (block / 8) + sample / 8;
-  return {(column + 0.5) / kSide - 0.5, (row + 0.5) / kSide - 0.5};
+  return {(column + 0.5) / kCellSamplesSide - 0.5, (row + 0.5) / kCellSamplesSide - 0.5};
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ CellSamples::CellSamples(const StackArcs& stack_arcs, int channels, bool keeps_s
       values_(keeps_samples ? channels : 0, Samples(kCount)) {}
 
 void CellSamples::begin() {
-  open_.fill(kAll);
+  open_.fill(kCellSamplesAll);
   are_all_opaque_ = true;
   shared_transmittance_ = 1.0;
   transmittance_sum_ = kCount;
@@ -132,7 +132,7 @@ void CellSamples::allow_translucency() {
 // Removes the filled samples from the open ones; returns how many were removed.
 double CellSamples::close_filled(const SampleRows& filled) {
   int removed = 0;
-  for (int row = 0; row < kSide; ++row) {
+  for (int row = 0; row < kCellSamplesSide; ++row) {
     removed += std::popcount(filled[row] & open_[row]);
     open_[row] &= ~filled[row];
   }
@@ -189,7 +189,7 @@ double CellSamples::composite_blocks(const ChannelValues& color, float opaque) {
     const int block = std::countr_zero(blocks);
     if (filled_blocks_[block] == 0) continue;
     Pending& pending = pending_[block];
-    if (filled_blocks_[block] == kAll) {
+    if (filled_blocks_[block] == kCellSamplesAll) {
       sum += static_cast<double>(block_transmittance_[block] * pending.transmittance);
       for (std::size_t c = 0; c < values_.size(); ++c) {
         pending.color[c] += pending.transmittance * static_cast<float>(color[c]);
@@ -253,7 +253,7 @@ void CellSamples::put_full_behind(const LayerAccumulator& accumulated) {
     return;
   }
   SampleRows all;
-  all.fill(kAll);
+  all.fill(kCellSamplesAll);
   put_constant_behind(all, accumulated.color, 1.0 - accumulated.transmittance);
 }
 
@@ -321,7 +321,7 @@ void CellSamples::compose_constant(std::span<const CellLayer> layers, CellColors
 
 void CellSamples::compose_varying(std::span<const CellLayer> layers, CellColors* colors) {
   SampleRows all;
-  all.fill(kAll);
+  all.fill(kCellSamplesAll);
   std::size_t next = 0;
   for (std::size_t i = 0; transmittance_sum_ > kMinTransmittanceSum; ++i) {
     const bool is_seen = colors->examine(i + 1) > i;
@@ -354,13 +354,13 @@ void CellSamples::moments(int channel, int degree, double* out) const {
     }
   };
   constexpr int kRowsTogether = 4;
-  constexpr int kVectors = kSide / kLanes;
+  constexpr int kVectors = kCellSamplesSide / kLanes;
   // For each column, the sums of y^b over rows.
   std::array<std::array<Floats, kVectors>, Kernel::kMostDegree + 1> up{};
-  for (int first = 0; first < kSide; first += kRowsTogether) {
+  for (int first = 0; first < kCellSamplesSide; first += kRowsTogether) {
     std::array<double, Kernel::kMostDegree + 1> powers;
-    constexpr double kHeight = double{kRowsTogether} / kSide;
-    mean_powers(first * (1.0 / kSide) + 0.5 * kHeight - 0.5, kHeight, &powers);
+    constexpr double kHeight = double{kRowsTogether} / kCellSamplesSide;
+    mean_powers(first * (1.0 / kCellSamplesSide) + 0.5 * kHeight - 0.5, kHeight, &powers);
     for (int i = 0; i < kVectors; ++i) {
       const int block = first / kBlockSide * kBlockSide + i * kLanes / kBlockSide;
       const int sample = first % kBlockSide * kBlockSide + i * kLanes % kBlockSide;
@@ -370,9 +370,9 @@ void CellSamples::moments(int channel, int degree, double* out) const {
       for (int b = 0; b <= degree; ++b) up[b][i] += sum * static_cast<float>(powers[b]);
     }
   }
-  for (int column = 0; column < kSide; ++column) {
+  for (int column = 0; column < kCellSamplesSide; ++column) {
     std::array<double, Kernel::kMostDegree + 1> powers;
-    mean_powers((column + 0.5) / kSide - 0.5, 1.0 / kSide, &powers);
+    mean_powers((column + 0.5) / kCellSamplesSide - 0.5, 1.0 / kCellSamplesSide, &powers);
     for (int a = 0; a <= degree; ++a) {
       for (int b = 0; b <= degree; ++b) {
         out[a * (degree + 1) + b] +=

@@ -14,14 +14,14 @@
 namespace prefilter {
 namespace {
 
-struct Interval {
+struct HalfPlaneInterval {
   double from;
   double to;
 };
 
 // Finds the parameter intervals of a segment in which the function is at least 0.
 void find_inside(std::span<const Point2> controls, double weight, const LinearFunction& function,
-                 std::vector<Interval>* inside) {
+                 std::vector<HalfPlaneInterval>* inside) {
   inside->clear();
   bool is_inside = true;
   std::array<Point2, Outline::kMostDegree + 1> values;  // of the function, in x
@@ -69,13 +69,13 @@ void find_inside(std::span<const Point2> controls, double weight, const LinearFu
 // The part of an outline where the function is at least 0.
 Outline clip(const Outline& outline, const LinearFunction& function) {
   Outline clipped;
-  std::vector<Interval> inside;
+  std::vector<HalfPlaneInterval> inside;
   for (std::size_t contour = 0; contour < outline.contour_count(); ++contour) {
     bool has_begun = false;
     Point2 last;
     const auto add_segment = [&](std::span<const Point2> controls, double weight) {
       find_inside(controls, weight, function, &inside);
-      for (const Interval& interval : inside) {
+      for (const HalfPlaneInterval& interval : inside) {
         const PartOfCurve part({controls, weight}, interval.from, interval.to);
         const std::span<const Point2> points = part.curve().controls;
         if (!has_begun) {

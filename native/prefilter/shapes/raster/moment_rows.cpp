@@ -12,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-constexpr double kMomentUnit = 1.0 / (1 << kMomentBits);
+constexpr double kMomentRowsUnit = 1.0 / (1 << kMomentBits);
 // Bits of a run's weights, so that weights times moments are coverage.
 constexpr int kWeightBits = kCoverageBits - kMomentBits;
 
@@ -124,7 +124,7 @@ void MomentRows<N>::add_equal_cells(int from, int to, const Across& across) {
   bool is_empty = true;
   std::array<double, 2 * kPairs> units{};
   for (int b = 0; b < kCount; ++b) {
-    units[b] = static_cast<double>(across[b]) * kMomentUnit;
+    units[b] = static_cast<double>(across[b]) * kMomentRowsUnit;
     is_empty = is_empty && across[b] == 0;
   }
   if (is_empty) return;
@@ -164,13 +164,13 @@ void MomentRows<N>::add_cell(int column, const ArcMoments<N>& cell, const Across
   };
   Pair moments[kCount][kPairs];
   for (int q = 0; q < kPairs; ++q) {
-    const Pair own = convert<Pair>(load(ArcMoments<N>::kAcross + 2 * q)) * kMomentUnit;
+    const Pair own = convert<Pair>(load(ArcMoments<N>::kAcross + 2 * q)) * kMomentRowsUnit;
     Pair before{};
     for (int b = 2 * q; b < std::min(2 * q + 2, kCount); ++b) {
-      before[b % 2] = static_cast<double>(across[b]) * kMomentUnit;
+      before[b % 2] = static_cast<double>(across[b]) * kMomentRowsUnit;
     }
     for (int a = 0; a < kCount; ++a) {
-      const Pair inside = convert<Pair>(load(a * kCount + 2 * q)) * kMomentUnit;
+      const Pair inside = convert<Pair>(load(a * kCount + 2 * q)) * kMomentRowsUnit;
       moments[a][q] = own * at_high_end(a) - inside + before * mean_power(a);
     }
   }

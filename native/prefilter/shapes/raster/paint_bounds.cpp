@@ -10,7 +10,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kAlpha = kMaxChannels - 1;
+constexpr int kPaintBoundsAlpha = kMaxChannels - 1;
 
 }  // namespace
 
@@ -81,15 +81,16 @@ double max_transmittance(const Paint& paint, int channels) {
   double least = 1.0;
   switch (paint.kind) {
     case Paint::Kind::kConstant:
-      least = paint.constant[kAlpha];
+      least = paint.constant[kPaintBoundsAlpha];
       break;
     case Paint::Kind::kLinear:
-      least = paint.along_x[kAlpha] == 0.0 && paint.along_y[kAlpha] == 0.0 ? paint.constant[kAlpha]
-                                                                           : 0.0;
+      least = paint.along_x[kPaintBoundsAlpha] == 0.0 && paint.along_y[kPaintBoundsAlpha] == 0.0
+                  ? paint.constant[kPaintBoundsAlpha]
+                  : 0.0;
       break;
     default:
       for (const GradientStop& stop : paint.stops) {
-        least = std::min(least, stop.value[kAlpha]);
+        least = std::min(least, stop.value[kPaintBoundsAlpha]);
       }
       break;
   }
@@ -100,7 +101,7 @@ PaintVariation variation_per_pixel(const Paint& paint) {
   PaintVariation variation;
   const auto include = [&](int channel, double change) {
     variation.value = std::max(variation.value, change);
-    if (channel == kAlpha) variation.alpha = change;
+    if (channel == kPaintBoundsAlpha) variation.alpha = change;
   };
   if (paint.kind == Paint::Kind::kConstant || paint.kind == Paint::Kind::kLinear) {
     for (int c = 0; c < paint.channels; ++c) {

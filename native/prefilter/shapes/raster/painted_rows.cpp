@@ -9,7 +9,7 @@
 namespace prefilter {
 namespace {
 
-constexpr double kMomentUnit = 1.0 / (1 << kMomentBits);
+constexpr double kPaintedRowsUnit = 1.0 / (1 << kMomentBits);
 
 }  // namespace
 
@@ -79,12 +79,12 @@ void PaintedRows<N>::add_values(const MomentCells<N>& cells, const LocalColor& c
       bool is_full = true;
       for (int b = 1; b <= N; ++b) is_full = is_full && across[b] == 0;
       if (is_full) {
-        const double share = static_cast<double>(across[0]) * kMomentUnit;
+        const double share = static_cast<double>(across[0]) * kPaintedRowsUnit;
         if (across[0] != 0) add_full_cells(begin, end, row, share, color);
         return;
       }
       std::array<double, N + 1> line;
-      for (int b = 0; b <= N; ++b) line[b] = static_cast<double>(across[b]) * kMomentUnit;
+      for (int b = 0; b <= N; ++b) line[b] = static_cast<double>(across[b]) * kPaintedRowsUnit;
       line = in_powers(line);
       Moments moments;
       for (int a = 0; a <= N; ++a) {
@@ -100,8 +100,8 @@ void PaintedRows<N>::add_values(const MomentCells<N>& cells, const LocalColor& c
       for (int a = 0; a <= N; ++a) {
         std::array<double, N + 1> line;
         for (int b = 0; b <= N; ++b) {
-          line[b] = kMomentUnit * (at_high_end(a) * cell.across(b) - cell.inside(a, b) +
-                                   mean_power(a) * static_cast<double>(across[b]));
+          line[b] = kPaintedRowsUnit * (at_high_end(a) * cell.across(b) - cell.inside(a, b) +
+                                        mean_power(a) * static_cast<double>(across[b]));
         }
         moments[a] = in_powers(line);
       }

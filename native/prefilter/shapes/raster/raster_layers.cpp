@@ -25,13 +25,13 @@ constexpr int kMaxShapesPerLayer = 16;
 
 bool has_alpha(const Paint& paint) { return paint.channels == kMaxChannels; }
 
-constexpr int kAlpha = kMaxChannels - 1;
+constexpr int kRasterLayersAlpha = kMaxChannels - 1;
 
 // Subtracts the part of the background that a paint hides, so that a shape's value can be added to
 // the background.
 void subtract_background(const ChannelValues& background, Paint* paint) {
   const auto take = [&](ChannelValues* value, double opaque) {
-    const double alpha = has_alpha(*paint) ? (*value)[kAlpha] : opaque;
+    const double alpha = has_alpha(*paint) ? (*value)[kRasterLayersAlpha] : opaque;
     for (int c = 0; c < paint->channels; ++c) (*value)[c] -= alpha * background[c];
   };
   take(&paint->constant, 1.0);
@@ -177,7 +177,8 @@ class LayerPlanner {
         for (VisiblePiece& piece : *group.pieces) {
           double transmittance = 1.0;
           for (const std::uint32_t overlay : piece.overlays) {
-            transmittance *= 1.0 - shapes_[group.shapes[overlay]].paint.constant[kAlpha];
+            transmittance *=
+                1.0 - shapes_[group.shapes[overlay]].paint.constant[kRasterLayersAlpha];
           }
           builder.add(builder.keep(std::move(piece.outline)),
                       scaled(paints[group.shapes[piece.layer]], transmittance));
@@ -348,7 +349,8 @@ RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& opt
   std::uint32_t first = 0;
   for (; covers && first < shapes.size() && covers_image(shapes[first], options); ++first) {
     const ChannelValues& color = shapes[first].paint.constant;
-    const double transmittance = has_alpha(shapes[first].paint) ? 1.0 - color[kAlpha] : 0.0;
+    const double transmittance =
+        has_alpha(shapes[first].paint) ? 1.0 - color[kRasterLayersAlpha] : 0.0;
     for (int c = 0; c < out.channels; ++c) {
       out.background[c] = transmittance * out.background[c] + color[c];
     }

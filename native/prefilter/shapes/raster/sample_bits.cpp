@@ -16,17 +16,18 @@
 namespace prefilter {
 namespace {
 
-constexpr int kSide = SampleBits::kSide;
+constexpr int kSampleBitsSide = SampleBits::kSampleBitsSide;
 constexpr int kCount = SampleBits::kCount;
-constexpr std::uint64_t kAll = ~std::uint64_t{0};
+constexpr std::uint64_t kSampleBitsAll = ~std::uint64_t{0};
 
 // A fixed permutation of the integers below 64.
-constexpr std::array<int, kSide> shuffled(unsigned first, unsigned factor, unsigned shift) {
-  std::array<int, kSide> numbers{};
-  for (unsigned i = 0; i < kSide; ++i) {
-    unsigned mixed = (i * factor + first) % kSide;
+constexpr std::array<int, kSampleBitsSide> shuffled(unsigned first, unsigned factor,
+                                                    unsigned shift) {
+  std::array<int, kSampleBitsSide> numbers{};
+  for (unsigned i = 0; i < kSampleBitsSide; ++i) {
+    unsigned mixed = (i * factor + first) % kSampleBitsSide;
     mixed ^= mixed >> shift;
-    mixed = mixed * 27 % kSide;
+    mixed = mixed * 27 % kSampleBitsSide;
     mixed ^= mixed >> 3;
     numbers[i] = static_cast<int>(mixed);
   }
@@ -34,22 +35,24 @@ constexpr std::array<int, kSide> shuffled(unsigned first, unsigned factor, unsig
 }
 
 // Shifts of rows to the right and of columns upward, in 1/64 of a step.
-constexpr std::array<int, kSide> kRowShifts = shuffled(7, 43, 2);
-constexpr std::array<int, kSide> kColumnShifts = shuffled(29, 37, 3);
+constexpr std::array<int, kSampleBitsSide> kRowShifts = shuffled(7, 43, 2);
+constexpr std::array<int, kSampleBitsSide> kColumnShifts = shuffled(29, 37, 3);
 
-constexpr std::array<float, kSide> positions_of(const std::array<int, kSide>& shifts) {
-  std::array<float, kSide> positions{};
-  for (int i = 0; i < kSide; ++i) positions[i] = (static_cast<float>(shifts[i]) + 0.5F) / kSide;
+constexpr std::array<float, kSampleBitsSide> positions_of(
+    const std::array<int, kSampleBitsSide>& shifts) {
+  std::array<float, kSampleBitsSide> positions{};
+  for (int i = 0; i < kSampleBitsSide; ++i)
+    positions[i] = (static_cast<float>(shifts[i]) + 0.5F) / kSampleBitsSide;
   return positions;
 }
 
-constexpr std::array<float, kSide> kRowPositions = positions_of(kRowShifts);
+constexpr std::array<float, kSampleBitsSide> kRowPositions = positions_of(kRowShifts);
 
 // Columns shifted by at least this much.
-constexpr std::array<std::uint64_t, kSide + 1> kShiftedFrom = [] {
-  std::array<std::uint64_t, kSide + 1> columns{};
-  for (int shift = 0; shift <= kSide; ++shift) {
-    for (int c = 0; c < kSide; ++c) {
+constexpr std::array<std::uint64_t, kSampleBitsSide + 1> kShiftedFrom = [] {
+  std::array<std::uint64_t, kSampleBitsSide + 1> columns{};
+  for (int shift = 0; shift <= kSampleBitsSide; ++shift) {
+    for (int c = 0; c < kSampleBitsSide; ++c) {
       if (kColumnShifts[c] >= shift) columns[shift] |= std::uint64_t{1} << c;
     }
   }
@@ -57,9 +60,9 @@ constexpr std::array<std::uint64_t, kSide + 1> kShiftedFrom = [] {
 }();
 
 // Columns from this one on.
-constexpr std::array<std::uint64_t, kSide + 1> kFrom = [] {
-  std::array<std::uint64_t, kSide + 1> columns{};
-  for (int c = 0; c < kSide; ++c) columns[c] = kAll << c;
+constexpr std::array<std::uint64_t, kSampleBitsSide + 1> kFrom = [] {
+  std::array<std::uint64_t, kSampleBitsSide + 1> columns{};
+  for (int c = 0; c < kSampleBitsSide; ++c) columns[c] = kSampleBitsAll << c;
   return columns;
 }();
 
@@ -75,14 +78,15 @@ void find_right_of_steep(Point2 low, Point2 high, const Band& band, SampleRows* 
   const double slope = (high.x - low.x) / (high.y - low.y);
   const int begin = band.first_row();
   const int end = band.end_row();
-  const double y = (begin + 0.5) / kSide - 0.5;
-  const auto first = static_cast<float>((low.x + (y - low.y) * slope + 0.5) * kSide + 1.0);
+  const double y = (begin + 0.5) / kSampleBitsSide - 0.5;
+  const auto first =
+      static_cast<float>((low.x + (y - low.y) * slope + 0.5) * kSampleBitsSide + 1.0);
   const auto step = static_cast<float>(slope);
-  std::array<std::int32_t, kSide> columns;
+  std::array<std::int32_t, kSampleBitsSide> columns;
   for (int row = begin; row < end; ++row) {
     const float column = first + step * static_cast<float>(row - begin) - kRowPositions[row];
-    columns[row] =
-        static_cast<std::int32_t>(std::min(std::max(column, 0.0F), static_cast<float>(kSide)));
+    columns[row] = static_cast<std::int32_t>(
+        std::min(std::max(column, 0.0F), static_cast<float>(kSampleBitsSide)));
   }
   for (int row = begin; row < end; ++row) (*right)[row] = kFrom[columns[row]];
   (*right)[begin] &= band.columns(begin);
@@ -93,30 +97,30 @@ void find_right_of_steep(Point2 low, Point2 high, const Band& band, SampleRows* 
 void find_right_of_flat(Point2 low, Point2 high, const Band& band, SampleRows* right) {
   const double slope = (high.y - low.y) / (high.x - low.x);
   const auto column_of = [](double x) {
-    return std::clamp(static_cast<int>((x + 0.5) * kSide), 0, kSide - 1);
+    return std::clamp(static_cast<int>((x + 0.5) * kSampleBitsSide), 0, kSampleBitsSide - 1);
   };
   const int begin = column_of(std::min(low.x, high.x));
   const int end = column_of(std::max(low.x, high.x)) + 1;
-  const double x = (begin + 0.5) / kSide - 0.5;
+  const double x = (begin + 0.5) / kSampleBitsSide - 0.5;
   const auto first = static_cast<float>((low.y + (x - low.x) * slope + 0.5) * kCount + 0.5);
-  const auto step = static_cast<float>(slope * kSide);
+  const auto step = static_cast<float>(slope * kSampleBitsSide);
   const auto least = static_cast<float>(band.low);
   const auto most = static_cast<float>(band.high);
-  std::array<std::int32_t, kSide> rows;  // the first row above the line
+  std::array<std::int32_t, kSampleBitsSide> rows;  // the first row above the line
   for (int column = begin; column < end; ++column) {
     const float number = first + step * static_cast<float>(column - begin);
-    rows[column] = (static_cast<std::int32_t>(std::min(std::max(number, least), most)) + kSide - 1 -
-                    kColumnShifts[column]) >>
+    rows[column] = (static_cast<std::int32_t>(std::min(std::max(number, least), most)) +
+                    kSampleBitsSide - 1 - kColumnShifts[column]) >>
                    6;
   }
   // Rows at which samples enter or leave the region.
-  std::array<std::uint64_t, kSide + 2> changes;
+  std::array<std::uint64_t, kSampleBitsSide + 2> changes;
   const int first_row = band.first_row();
   const int end_row = band.end_row();
   std::fill(changes.begin() + first_row, changes.begin() + end_row + 2, 0);
   const auto change = [&changes](int number, std::uint64_t columns) {
-    const int row = number / kSide;
-    const std::uint64_t above = kShiftedFrom[number % kSide];
+    const int row = number / kSampleBitsSide;
+    const std::uint64_t above = kShiftedFrom[number % kSampleBitsSide];
     changes[row] ^= columns & above;
     changes[row + 1] ^= columns & ~above;
   };
@@ -207,8 +211,8 @@ void add_bit(const SampleBits::Band& band, std::span<SampleRows> planes, SampleR
 }  // namespace
 
 std::uint64_t SampleBits::Band::columns(int row) const {
-  return kShiftedFrom[std::clamp(low - row * kSide, 0, kSide)] &
-         ~kShiftedFrom[std::clamp(high - row * kSide, 0, kSide)];
+  return kShiftedFrom[std::clamp(low - row * kSampleBitsSide, 0, kSampleBitsSide)] &
+         ~kShiftedFrom[std::clamp(high - row * kSampleBitsSide, 0, kSampleBitsSide)];
 }
 
 // Calls use(low, high) for lines that approximate an arc.
@@ -244,14 +248,15 @@ void SampleBits::for_lines(const StackArc& arc, const Point2& center, const Use&
 }
 
 void SampleBits::fill_odd(const CellLayer& layer, const Point2& center) {
-  filled_.fill(layer.base % 2 == 0 ? 0 : kAll);
+  filled_.fill(layer.base % 2 == 0 ? 0 : kSampleBitsAll);
   const auto flip = [this](const Band& band) {
     for (int row = band.first_row(); row < band.end_row(); ++row) filled_[row] ^= right_[row];
   };
   for (const SideStep& step : layer.steps) {
     if (step.winding % 2 == 0) continue;
     const Band above{samples_below(step.y), kCount};
-    for (int row = above.first_row(); row < kSide; ++row) filled_[row] ^= above.columns(row);
+    for (int row = above.first_row(); row < kSampleBitsSide; ++row)
+      filled_[row] ^= above.columns(row);
   }
   for (const StackArc& arc : layer.arcs) {
     if (arc.winding % 2 == 0) continue;
@@ -301,7 +306,7 @@ void SampleBits::fill_by_winding(const CellLayer& layer, const Point2& center, i
   }
   filled_.fill(0);
   for (const SampleRows& plane : planes_) {
-    for (int row = 0; row < kSide; ++row) filled_[row] |= plane[row];
+    for (int row = 0; row < kSampleBitsSide; ++row) filled_[row] |= plane[row];
   }
 }
 

@@ -13,7 +13,7 @@ namespace prefilter {
 namespace {
 
 // An interval of x from the map's key to `high`, occupied up to a height.
-struct Interval {
+struct ShapeGroupsInterval {
   double high = 0.0;
   double top = 0.0;
   std::uint32_t group = 0;
@@ -30,14 +30,14 @@ std::vector<std::vector<std::uint32_t>> overlapping_groups(std::span<const Box2>
     return boxes[a].low.y != boxes[b].low.y ? boxes[a].low.y < boxes[b].low.y : a < b;
   });
   DisjointSets<std::uint32_t> sets(boxes.size());
-  std::map<double, Interval> passed;  // disjoint
+  std::map<double, ShapeGroupsInterval> passed;  // disjoint
   for (const std::uint32_t i : order) {
     double low = boxes[i].low.x;
-    Interval interval{boxes[i].high.x, boxes[i].high.y, i};
+    ShapeGroupsInterval interval{boxes[i].high.x, boxes[i].high.y, i};
     auto at = passed.upper_bound(low);
     if (at != passed.begin() && std::prev(at)->second.high >= low) --at;
     while (at != passed.end() && at->first <= interval.high) {
-      const Interval& other = at->second;
+      const ShapeGroupsInterval& other = at->second;
       if (other.top >= boxes[i].low.y) {
         sets.join(other.group, i);
         low = std::min(low, at->first);

@@ -11,7 +11,7 @@
 namespace prefilter {
 namespace {
 
-constexpr double kMomentUnit = 1.0 / (1 << kMomentBits);
+constexpr double kStackRowsUnit = 1.0 / (1 << kMomentBits);
 constexpr std::size_t kMaxArcsForMoments = RowLayers::kMaxSweptArcs;
 // Areas are not limited by the range of integer moments; a curve then consists of several arcs.
 constexpr std::size_t kMaxArcsForAreas = 250;
@@ -254,7 +254,7 @@ void StackRows<N>::add_state_pair(const ArcMoments<N>& moments, const ChannelVal
   for (int a = 0; a <= N; ++a) {
     auto& line = powers[a];
     for (int b = 0; b <= N; ++b) {
-      line[b] = kMomentUnit * (at_high_end(a) * moments.across(b) - moments.inside(a, b));
+      line[b] = kStackRowsUnit * (at_high_end(a) * moments.across(b) - moments.inside(a, b));
     }
     for (int b = 1; b <= N; ++b) line[b] += mean_power(b) * line[0];
   }

@@ -16,10 +16,10 @@
 namespace prefilter {
 namespace {
 
-constexpr std::ptrdiff_t kTexelBytes = 4 * 4 * 4;
-constexpr std::ptrdiff_t kBlockBytes = 16;
+constexpr std::ptrdiff_t kBc7TexelBytes = 4 * 4 * 4;
+constexpr std::ptrdiff_t kBc7BlockBytes = 16;
 /// Makes a texel that is no longer opaque worse than any error of colors.
-constexpr std::int64_t kOpaqueWeight = std::int64_t{1} << 32;
+constexpr std::int64_t kBc7OpaqueWeight = std::int64_t{1} << 32;
 /// Squared error per block up to which normal effort keeps BC7F's result: half of the color values
 /// are off by at most 1/255. On photographs this costs up to 0.2 dB and halves the time.
 constexpr std::int64_t kCloseEnough = 32;
@@ -47,22 +47,22 @@ class ClosestBc7Encoder final : public ByteEncoder {
     for (int i = 0; i < row.count; ++i) {
       if ((*least)[static_cast<std::size_t>(i)] <= close_enough_) continue;
       far_off.push_back(i);
-      const std::uint8_t* from = row.texels + kTexelBytes * i;
-      texels.insert(texels.end(), from, from + kTexelBytes);
+      const std::uint8_t* from = row.texels + kBc7TexelBytes * i;
+      texels.insert(texels.end(), from, from + kBc7TexelBytes);
     }
     if (far_off.empty()) return;
     const BlockRow<std::uint8_t> part{texels.data(), static_cast<int>(far_off.size()),
                                       row.rows_inside,
                                       far_off.back() == row.count - 1 ? row.last_columns : 4};
-    std::vector<std::uint8_t> others(static_cast<std::size_t>(kBlockBytes * part.count));
+    std::vector<std::uint8_t> others(static_cast<std::size_t>(kBc7BlockBytes * part.count));
     encoders_[number]->encode(part, others.data());
     const std::vector<std::int64_t> found = errors(part, others.data());
     for (std::size_t i = 0; i < far_off.size(); ++i) {
       std::int64_t& before = (*least)[static_cast<std::size_t>(far_off[i])];
       if (found[i] >= before) continue;
       before = found[i];
-      std::copy_n(others.begin() + kBlockBytes * static_cast<std::ptrdiff_t>(i), kBlockBytes,
-                  blocks + kBlockBytes * far_off[i]);
+      std::copy_n(others.begin() + kBc7BlockBytes * static_cast<std::ptrdiff_t>(i), kBc7BlockBytes,
+                  blocks + kBc7BlockBytes * far_off[i]);
     }
   }
 
@@ -72,13 +72,14 @@ class ClosestBc7Encoder final : public ByteEncoder {
     const std::vector<std::int64_t> of_alpha = squared_errors(row, decoded, {3, 3, 1});
     for (int i = 0; i < row.count; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      sums[at] += (is_opaque(row.texels + kTexelBytes * i) ? kOpaqueWeight : 1) * of_alpha[at];
+      sums[at] +=
+          (is_opaque(row.texels + kBc7TexelBytes * i) ? kBc7OpaqueWeight : 1) * of_alpha[at];
     }
     return sums;
   }
 
   static bool is_opaque(const std::uint8_t* texels) {
-    for (std::ptrdiff_t byte = 3; byte < kTexelBytes; byte += 4) {
+    for (std::ptrdiff_t byte = 3; byte < kBc7TexelBytes; byte += 4) {
       if (texels[byte] != 255) return false;
     }
     return true;

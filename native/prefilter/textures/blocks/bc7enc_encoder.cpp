@@ -9,8 +9,8 @@
 namespace prefilter {
 namespace {
 
-constexpr std::ptrdiff_t kTexelBytes = 4 * 4 * 4;
-constexpr std::uint32_t kOpaqueWeight = 1024;
+constexpr std::ptrdiff_t kBc7encTexelBytes = 4 * 4 * 4;
+constexpr std::uint32_t kBc7encOpaqueWeight = 1024;
 
 bc7enc_compress_block_params parameters(BlockEffort effort) {
   bc7enc_compress_block_params params{};
@@ -43,12 +43,12 @@ class Bc7encEncoder final : public ByteEncoder {
     }();
     static_cast<void>(has_tables);
     opaque_.m_force_alpha = true;
-    opaque_.m_weights[3] = kOpaqueWeight;
+    opaque_.m_weights[3] = kBc7encOpaqueWeight;
   }
 
   void encode(const BlockRow<std::uint8_t>& row, std::uint8_t* blocks) override {
     for (int i = 0; i < row.count; ++i) {
-      const std::uint8_t* texels = row.texels + kTexelBytes * i;
+      const std::uint8_t* texels = row.texels + kBc7encTexelBytes * i;
       std::uint8_t* block = blocks + std::ptrdiff_t{BC7ENC_BLOCK_SIZE} * i;
       const bool has_alpha = bc7enc_compress_block(block, texels, &parameters_);
       if (!has_alpha && has_alpha_254(block)) bc7enc_compress_block(block, texels, &opaque_);

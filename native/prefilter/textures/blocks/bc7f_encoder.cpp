@@ -14,9 +14,9 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kTexels = 16;
-constexpr std::ptrdiff_t kTexelBytes = 4 * kTexels;
-constexpr std::ptrdiff_t kBlockBytes = 16;
+constexpr std::size_t kBc7fTexels = 16;
+constexpr std::ptrdiff_t kBc7fTexelBytes = 4 * kBc7fTexels;
+constexpr std::ptrdiff_t kBc7fBlockBytes = 16;
 
 // Without the option that may make opaque texels of mode 6 transparent.
 constexpr std::uint32_t kFast =
@@ -37,10 +37,10 @@ class Bc7fEncoder final : public ByteEncoder {
   }
 
   void encode(const BlockRow<std::uint8_t>& row, std::uint8_t* blocks) override {
-    std::array<basist::color_rgba, kTexels> texels;
+    std::array<basist::color_rgba, kBc7fTexels> texels;
     for (int i = 0; i < row.count; ++i) {
-      std::memcpy(texels.data(), row.texels + kTexelBytes * i, kTexelBytes);
-      basist::bc7f::fast_pack_bc7_auto_rgba(blocks + kBlockBytes * i, texels.data(), flags_);
+      std::memcpy(texels.data(), row.texels + kBc7fTexelBytes * i, kBc7fTexelBytes);
+      basist::bc7f::fast_pack_bc7_auto_rgba(blocks + kBc7fBlockBytes * i, texels.data(), flags_);
     }
   }
 

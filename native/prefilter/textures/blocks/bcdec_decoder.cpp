@@ -11,15 +11,15 @@
 namespace prefilter {
 namespace {
 
-constexpr int kSide = 4;
-constexpr std::ptrdiff_t kChannels = 4;
+constexpr int kBcdecDecodedSide = 4;
+constexpr std::ptrdiff_t kBcdecDecodedChannels = 4;
 
 /// Copies the channels of a decoded block into a row of blocks.
 template <class Channel>
 void copy_block(const Channel* from, int channels, Channel* texels, std::ptrdiff_t row_channels) {
-  for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) {
-      std::copy_n(from, channels, texels + y * row_channels + x * kChannels);
+  for (int y = 0; y < kBcdecDecodedSide; ++y) {
+    for (int x = 0; x < kBcdecDecodedSide; ++x) {
+      std::copy_n(from, channels, texels + y * row_channels + x * kBcdecDecodedChannels);
       from += channels;
     }
   }
@@ -31,24 +31,25 @@ class BcdecDecoder final : public ByteDecoder {
       : format_(options.format), bytes_(layout_of(options.format).bytes) {}
 
   void decode(const std::uint8_t* blocks, int count, std::uint8_t* texels) override {
-    const std::ptrdiff_t row_channels = kChannels * kSide * count;
+    const std::ptrdiff_t row_channels = kBcdecDecodedChannels * kBcdecDecodedSide * count;
     for (int i = 0; i < count; ++i) {
-      decode(blocks + std::ptrdiff_t{bytes_} * i, texels + kChannels * kSide * i, row_channels);
+      decode(blocks + std::ptrdiff_t{bytes_} * i,
+             texels + kBcdecDecodedChannels * kBcdecDecodedSide * i, row_channels);
     }
   }
 
  private:
   void decode(const std::uint8_t* block, std::uint8_t* texels, std::ptrdiff_t row_channels) const {
-    std::array<std::uint8_t, std::size_t{2} * kSide * kSide> few{};
+    std::array<std::uint8_t, std::size_t{2} * kBcdecDecodedSide * kBcdecDecodedSide> few{};
     const int pitch = static_cast<int>(row_channels);
     switch (format_) {
       case BlockFormat::kBc3:
         return bcdec_bc3(block, texels, pitch);
       case BlockFormat::kBc4:
-        bcdec_bc4(block, few.data(), kSide);
+        bcdec_bc4(block, few.data(), kBcdecDecodedSide);
         return copy_block(few.data(), 1, texels, row_channels);
       case BlockFormat::kBc5:
-        bcdec_bc5(block, few.data(), 2 * kSide);
+        bcdec_bc5(block, few.data(), 2 * kBcdecDecodedSide);
         return copy_block(few.data(), 2, texels, row_channels);
       case BlockFormat::kBc7:
         return bcdec_bc7(block, texels, pitch);
@@ -66,10 +67,11 @@ class BcdecHalfDecoder final : public HalfDecoder {
   void decode(const std::uint8_t* blocks, int count, HalfBits* texels) override {
     constexpr int kColors = 3;
     for (int i = 0; i < count; ++i) {
-      std::array<HalfBits, std::size_t{kColors} * kSide * kSide> colors{};
+      std::array<HalfBits, std::size_t{kColors} * kBcdecDecodedSide * kBcdecDecodedSide> colors{};
       bcdec_bc6h_half(blocks + std::ptrdiff_t{BCDEC_BC6H_BLOCK_SIZE} * i, colors.data(),
-                      kColors * kSide, 0);
-      copy_block(colors.data(), kColors, texels + kChannels * kSide * i, kChannels * kSide * count);
+                      kColors * kBcdecDecodedSide, 0);
+      copy_block(colors.data(), kColors, texels + kBcdecDecodedChannels * kBcdecDecodedSide * i,
+                 kBcdecDecodedChannels * kBcdecDecodedSide * count);
     }
   }
 };

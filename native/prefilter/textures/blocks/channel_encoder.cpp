@@ -20,8 +20,8 @@ namespace prefilter {
 namespace {
 
 constexpr int kParallelChannelBlocks = cvtt::NumParallelBlocks;
-constexpr int kSide = 4;
-constexpr int kTexels = kSide * kSide;
+constexpr int kChannelSide = 4;
+constexpr int kChannelTexels = kChannelSide * kChannelSide;
 constexpr std::ptrdiff_t kChannels = 4;
 constexpr std::ptrdiff_t kBytes = 8;
 
@@ -61,8 +61,8 @@ class ChannelEncoder final : public ByteEncoder {
     for (int i = 0; i < row.count; i += kParallelChannelBlocks) {
       const int count = std::min(kParallelChannelBlocks, row.count - i);
       const bool is_last = i + count == row.count;
-      const BlockRow<std::uint8_t> part{row.texels + kChannels * kTexels * i, count,
-                                        row.rows_inside, is_last ? row.last_columns : kSide};
+      const BlockRow<std::uint8_t> part{row.texels + kChannels * kChannelTexels * i, count,
+                                        row.rows_inside, is_last ? row.last_columns : kChannelSide};
       for (const ChannelHalf& place : places_) {
         improve_channel(part, place, blocks + block_bytes_ * i);
       }
@@ -82,11 +82,12 @@ class ChannelEncoder final : public ByteEncoder {
     std::array<cvtt::PixelBlockU8, kParallelChannelBlocks> texels{};
     for (std::ptrdiff_t i = 0; i < row.count; ++i) {
       // Texels beyond the image's edge are replaced by inside ones, repeated as evenly as possible.
-      const int columns = i == row.count - 1 ? row.last_columns : kSide;
-      for (int t = 0; t < kTexels; ++t) {
-        const int inside = kSide * (t / kSide % row.rows_inside) + t % kSide % columns;
+      const int columns = i == row.count - 1 ? row.last_columns : kChannelSide;
+      for (int t = 0; t < kChannelTexels; ++t) {
+        const int inside =
+            kChannelSide * (t / kChannelSide % row.rows_inside) + t % kChannelSide % columns;
         texels[static_cast<std::size_t>(i)].m_pixels[t][0] =
-            row.texels[kChannels * (kTexels * i + inside) + place.channel];
+            row.texels[kChannels * (kChannelTexels * i + inside) + place.channel];
       }
     }
     cvtt::Kernels::EncodeBC4U(other.data(), texels.data(), options_);

@@ -15,7 +15,7 @@ namespace prefilter {
 namespace {
 
 constexpr int kParallelBlocks = cvtt::NumParallelBlocks;
-constexpr int kBlockBytes = 16;
+constexpr int kCvttBlockBytes = 16;
 
 cvtt::Options bc6h_options(BlockEffort effort) {
   cvtt::Options options;
@@ -37,10 +37,10 @@ class CvttEncoder final : public HalfEncoder {
       const auto texel_bytes = static_cast<std::ptrdiff_t>(sizeof(cvtt::PixelBlockF16));
       std::memcpy(texels.data(), row.texels + texel_bytes / 2 * first,
                   static_cast<std::size_t>(texel_bytes * count));
-      std::array<std::uint8_t, kParallelBlocks * kBlockBytes> encoded{};
+      std::array<std::uint8_t, kParallelBlocks * kCvttBlockBytes> encoded{};
       cvtt::Kernels::EncodeBC6HU(encoded.data(), texels.data(), options_);
-      std::copy_n(encoded.begin(), count * kBlockBytes,
-                  blocks + std::ptrdiff_t{kBlockBytes} * first);
+      std::copy_n(encoded.begin(), count * kCvttBlockBytes,
+                  blocks + std::ptrdiff_t{kCvttBlockBytes} * first);
     }
   }
 
@@ -66,10 +66,10 @@ class CvttBc7Encoder final : public ByteEncoder {
       const auto texel_bytes = static_cast<std::ptrdiff_t>(sizeof(cvtt::PixelBlockU8));
       std::memcpy(texels.data(), row.texels + texel_bytes * first,
                   static_cast<std::size_t>(texel_bytes * count));
-      std::array<std::uint8_t, kParallelBlocks * kBlockBytes> encoded{};
+      std::array<std::uint8_t, kParallelBlocks * kCvttBlockBytes> encoded{};
       cvtt::Kernels::EncodeBC7(encoded.data(), texels.data(), options_);
-      std::copy_n(encoded.begin(), count * kBlockBytes,
-                  blocks + std::ptrdiff_t{kBlockBytes} * first);
+      std::copy_n(encoded.begin(), count * kCvttBlockBytes,
+                  blocks + std::ptrdiff_t{kCvttBlockBytes} * first);
     }
   }
 

@@ -16,7 +16,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::ptrdiff_t kChannels = 4;
+constexpr std::ptrdiff_t kDecodeBlocksChannels = 4;
 constexpr HalfBits kHalfOne = 0x3c00;
 constexpr std::uint8_t kByteOne = 255;
 
@@ -71,20 +71,21 @@ std::vector<Channel> decode(std::span<const std::uint8_t> blocks, int width, int
                   " x " + std::to_string(height) + " texels in '" + layout.name + "' take " +
                   std::to_string(rows * row_bytes));
   }
-  std::vector<Channel> image(static_cast<std::size_t>(kChannels * width * height));
+  std::vector<Channel> image(static_cast<std::size_t>(kDecodeBlocksChannels * width * height));
   WorkerPool<BlockDecoder<Channel>> decoders([&] { return make_decoder<Channel>(options); });
   parallel_for(rows, run, [&](std::int64_t row) {
-    const std::int64_t row_channels = kChannels * columns * layout.columns;
+    const std::int64_t row_channels = kDecodeBlocksChannels * columns * layout.columns;
     std::vector<Channel> texels(static_cast<std::size_t>(row_channels * layout.rows));
     constexpr auto kOpaque = static_cast<Channel>(kIsFloat<Channel> ? kHalfOne : kByteOne);
-    for (std::size_t i = kChannels - 1; i < texels.size(); i += kChannels) texels[i] = kOpaque;
+    for (std::size_t i = kDecodeBlocksChannels - 1; i < texels.size(); i += kDecodeBlocksChannels)
+      texels[i] = kOpaque;
     auto decoder = decoders.take();
     decoder->decode(blocks.data() + row * row_bytes, static_cast<int>(columns), texels.data());
     decoders.put_back(std::move(decoder));
     const std::int64_t inside = std::min<std::int64_t>(layout.rows, height - row * layout.rows);
     for (std::int64_t y = 0; y < inside; ++y) {
-      std::copy_n(texels.data() + y * row_channels, kChannels * width,
-                  image.data() + (row * layout.rows + y) * kChannels * width);
+      std::copy_n(texels.data() + y * row_channels, kDecodeBlocksChannels * width,
+                  image.data() + (row * layout.rows + y) * kDecodeBlocksChannels * width);
     }
   });
   return image;

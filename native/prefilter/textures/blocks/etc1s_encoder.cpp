@@ -20,8 +20,8 @@
 namespace prefilter {
 namespace {
 
-constexpr int kSide = 4;
-constexpr std::ptrdiff_t kChannels = 4;
+constexpr int kEtc1sSide = 4;
+constexpr std::ptrdiff_t kEtc1sChannels = 4;
 constexpr std::int64_t kMaxEtc1sTexels = std::int64_t{1} << 30;
 // Basis Universal's compression levels 0 to 6: from 1 on codebooks are built hierarchically, and
 // higher levels refine more.
@@ -84,10 +84,10 @@ class Slices {
     slice.m_first_block_index = static_cast<std::uint32_t>(blocks_.size());
     slice.m_orig_width = static_cast<std::uint32_t>(level.width);
     slice.m_orig_height = static_cast<std::uint32_t>(level.height);
-    slice.m_num_blocks_x = static_cast<std::uint32_t>(range_count(level.width, kSide));
-    slice.m_num_blocks_y = static_cast<std::uint32_t>(range_count(level.height, kSide));
-    slice.m_width = kSide * slice.m_num_blocks_x;
-    slice.m_height = kSide * slice.m_num_blocks_y;
+    slice.m_num_blocks_x = static_cast<std::uint32_t>(range_count(level.width, kEtc1sSide));
+    slice.m_num_blocks_y = static_cast<std::uint32_t>(range_count(level.height, kEtc1sSide));
+    slice.m_width = kEtc1sSide * slice.m_num_blocks_x;
+    slice.m_height = kEtc1sSide * slice.m_num_blocks_y;
     slice.m_num_macroblocks_x = (slice.m_num_blocks_x + 1) / 2;
     slice.m_num_macroblocks_y = (slice.m_num_blocks_y + 1) / 2;
     slice.m_mip_index = static_cast<std::uint32_t>(number);
@@ -102,11 +102,11 @@ class Slices {
 
   static basisu::pixel_block block_at(const Etc1sImage& level, int column, int row, bool is_alpha) {
     basisu::pixel_block block;
-    for (int y = 0; y < kSide; ++y) {
-      for (int x = 0; x < kSide; ++x) {
-        const std::ptrdiff_t from_y = std::min(kSide * row + y, level.height - 1);
-        const std::ptrdiff_t from_x = std::min(kSide * column + x, level.width - 1);
-        const std::uint8_t* texel = level.rgba + kChannels * (from_y * level.width + from_x);
+    for (int y = 0; y < kEtc1sSide; ++y) {
+      for (int x = 0; x < kEtc1sSide; ++x) {
+        const std::ptrdiff_t from_y = std::min(kEtc1sSide * row + y, level.height - 1);
+        const std::ptrdiff_t from_x = std::min(kEtc1sSide * column + x, level.width - 1);
+        const std::uint8_t* texel = level.rgba + kEtc1sChannels * (from_y * level.width + from_x);
         const auto color = [&](int channel) { return texel[is_alpha ? 3 : channel]; };
         block.m_pixels[y][x].set_noclamp_rgba(color(0), color(1), color(2), 255);
       }

@@ -16,16 +16,16 @@
 namespace prefilter {
 namespace {
 
-constexpr std::ptrdiff_t kSide = 4, kRgba = 4;
-constexpr std::ptrdiff_t kRgbaBytes = kRgba * kSide * kSide;
+constexpr std::ptrdiff_t kEtc2Side = 4, kRgba = 4;
+constexpr std::ptrdiff_t kRgbaBytes = kRgba * kEtc2Side * kEtc2Side;
 constexpr std::ptrdiff_t kColorBytes = 8;
 
 EtcTexels texels_of(const std::uint8_t* rgba, int rows, int columns) {
   EtcTexels texels{};
   for (std::ptrdiff_t t = 0; t < EtcTexels::kCount; ++t) {
-    const std::ptrdiff_t x = t / kSide;
-    const std::ptrdiff_t y = t % kSide;
-    const std::uint8_t* texel = rgba + kRgba * (kSide * y + x);
+    const std::ptrdiff_t x = t / kEtc2Side;
+    const std::ptrdiff_t y = t % kEtc2Side;
+    const std::uint8_t* texel = rgba + kRgba * (kEtc2Side * y + x);
     const auto at = static_cast<std::size_t>(t);
     texels.colors[at] = {texel[0], texel[1], texel[2]};
     texels.weights[at] = x < columns && y < rows ? 1 : 0;
@@ -47,7 +47,7 @@ class Etc2Encoder final : public ByteEncoder {
     for (int i = 0; i < row.count; ++i) {
       const std::int64_t error = errors[static_cast<std::size_t>(i)];
       if (error == 0) continue;
-      const int columns = i == row.count - 1 ? row.last_columns : static_cast<int>(kSide);
+      const int columns = i == row.count - 1 ? row.last_columns : static_cast<int>(kEtc2Side);
       const EtcTexels texels = texels_of(row.texels + kRgbaBytes * i, row.rows_inside, columns);
       const EtcBlock closest = closer(closer(search_etc_plane(texels), search_etc_halves(texels)),
                                       search_etc_paints(texels));

@@ -31,7 +31,7 @@ struct HalfFit {
   int error = kLargestError + 1;
 };
 
-int expanded(int value, int bits) {
+int expand_halves(int value, int bits) {
   return bits == kIndividualBits ? value * 17 : value << 3 | value >> 2;
 }
 
@@ -83,7 +83,7 @@ class Half {
       for (int i = 0; i < 4; ++i) {
         int error = 0;
         for (std::size_t c = 0; c < 3; ++c) {
-          const int color = expanded(fit->base[c], bits) + kModifiers[fit->table][i];
+          const int color = expand_halves(fit->base[c], bits) + kModifiers[fit->table][i];
           error += square(std::clamp(color, 0, 255) - colors_[t][c]);
         }
         if (error >= least) continue;

@@ -18,7 +18,7 @@ namespace {
 constexpr int kDistances[] = {3, 6, 11, 16, 23, 32, 41, 64};
 constexpr int kMaxChannel4Bits = 15;
 constexpr int kMaxPaintRounds = 3;
-constexpr std::size_t kTexels = EtcTexels::kCount;
+constexpr std::size_t kEtc2PaintsTexels = EtcTexels::kCount;
 
 /// The color of a texel: one of the two base colors, plus some distances.
 struct Paint {
@@ -32,7 +32,7 @@ struct Painting {
   bool is_h = false;
   std::array<EtcColor, 2> colors{};
   int distance = 0;
-  std::array<int, kTexels> indices{};
+  std::array<int, kEtc2PaintsTexels> indices{};
   int error = kLargestError + 1;
 
   const Paint& paint(int index) const { return (is_h ? kOfH : kOfT)[index]; }
@@ -50,7 +50,7 @@ void assign_texels(const EtcTexels& texels, int limit, Painting* painting) {
     }
   }
   painting->error = 0;
-  for (std::size_t t = 0; t < kTexels && painting->error <= limit; ++t) {
+  for (std::size_t t = 0; t < kEtc2PaintsTexels && painting->error <= limit; ++t) {
     int least = std::numeric_limits<int>::max();
     for (std::size_t i = 0; i < 4; ++i) {
       const EtcColor& texel = texels.colors[t];
@@ -68,7 +68,7 @@ void assign_texels(const EtcTexels& texels, int limit, Painting* painting) {
 std::array<EtcColor, 2> colors_for(const EtcTexels& texels, const Painting& painting) {
   std::array<EtcColor, 2> sums{};
   std::array<int, 2> counts{};
-  for (std::size_t t = 0; t < kTexels; ++t) {
+  for (std::size_t t = 0; t < kEtc2PaintsTexels; ++t) {
     const Paint& paint = painting.paint(painting.indices[t]);
     counts[paint.color] += texels.weights[t];
     for (std::size_t c = 0; c < 3; ++c) {
@@ -104,7 +104,7 @@ void refine_fit(const EtcTexels& texels, int limit, Painting* painting) {
 /// The texels inside the image, ordered by their positions along the line.
 std::vector<std::size_t> texels_along_line(const EtcTexels& texels) {
   std::vector<std::size_t> inside;
-  for (std::size_t t = 0; t < kTexels; ++t) {
+  for (std::size_t t = 0; t < kEtc2PaintsTexels; ++t) {
     if (texels.weights[t] != 0) inside.push_back(t);
   }
   EtcColor along{};
@@ -184,7 +184,7 @@ EtcBlock packed(Painting painting) {
   constexpr EtcBlock kNone{0, kLargestError + 1};
   if (painting.is_h && !order_colors(&painting)) return kNone;
   std::uint64_t bits = painting.is_h ? packed_h(painting) : packed_t(painting);
-  for (std::size_t t = 0; t < kTexels; ++t) {
+  for (std::size_t t = 0; t < kEtc2PaintsTexels; ++t) {
     const auto index = static_cast<std::uint64_t>(painting.indices[t]);
     bits |= (index >> 1) << (16 + t) | (index & 1) << t;
   }

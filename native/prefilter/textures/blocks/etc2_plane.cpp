@@ -10,7 +10,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kSide = 4;
+constexpr int kEtc2PlaneSide = 4;
 constexpr int kBits[] = {6, 7, 6};
 
 /// A channel's values at the first texel, and one block width to the right and down.
@@ -21,17 +21,17 @@ struct ChannelPlane {
   int error;
 };
 
-int expanded(int value, int bits) { return value << (8 - bits) | value >> (2 * bits - 8); }
+int expand_plane(int value, int bits) { return value << (8 - bits) | value >> (2 * bits - 8); }
 
 int error_of(const EtcTexels& texels, std::size_t channel, const Corners& corners) {
   const int bits = kBits[channel];
-  const int first = expanded(corners[0], bits);
-  const int right = expanded(corners[1], bits) - first;
-  const int down = expanded(corners[2], bits) - first;
+  const int first = expand_plane(corners[0], bits);
+  const int right = expand_plane(corners[1], bits) - first;
+  const int down = expand_plane(corners[2], bits) - first;
   int error = 0;
   for (int t = 0; t < EtcTexels::kCount; ++t) {
     const auto at = static_cast<std::size_t>(t);
-    const int value = (4 * first + t / kSide * right + t % kSide * down + 2) >> 2;
+    const int value = (4 * first + t / kEtc2PlaneSide * right + t % kEtc2PlaneSide * down + 2) >> 2;
     error += texels.weights[at] * square(std::clamp(value, 0, 255) - texels.colors[at][channel]);
   }
   return error;
@@ -45,13 +45,13 @@ Corners least_squares(const EtcTexels& texels, std::size_t channel) {
   for (int t = 0; t < EtcTexels::kCount; ++t) {
     const double value = texels.colors[static_cast<std::size_t>(t)][channel];
     mean += value / EtcTexels::kCount;
-    right += (t / kSide - kMiddle) * value / kSquares;
-    down += (t % kSide - kMiddle) * value / kSquares;
+    right += (t / kEtc2PlaneSide - kMiddle) * value / kSquares;
+    down += (t % kEtc2PlaneSide - kMiddle) * value / kSquares;
   }
   const double first = mean - kMiddle * (right + down);
   const int most = (1 << kBits[channel]) - 1;
   Corners corners{};
-  const double values[] = {first, first + kSide * right, first + kSide * down};
+  const double values[] = {first, first + kEtc2PlaneSide * right, first + kEtc2PlaneSide * down};
   for (std::size_t i = 0; i < 3; ++i) {
     corners[i] = static_cast<int>(std::floor(std::clamp(values[i], 0.0, 255.0) / 255 * most + 0.5));
   }

@@ -11,7 +11,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kSide = 4;
+constexpr int kEtcpakDecodedSide = 4;
 
 class EtcpakDecoder final : public ByteDecoder {
  public:
@@ -22,8 +22,8 @@ class EtcpakDecoder final : public ByteDecoder {
     const auto size = static_cast<std::size_t>(count);
     std::vector<std::uint64_t> words(size * static_cast<std::size_t>(bytes_) / sizeof words[0]);
     std::memcpy(words.data(), blocks, words.size() * sizeof words[0]);
-    std::vector<std::uint32_t> rgba(size * kSide * kSide);
-    decode(words.data(), rgba.data(), kSide * count);
+    std::vector<std::uint32_t> rgba(size * kEtcpakDecodedSide * kEtcpakDecodedSide);
+    decode(words.data(), rgba.data(), kEtcpakDecodedSide * count);
     std::memcpy(texels, rgba.data(), rgba.size() * sizeof rgba[0]);
   }
 
@@ -31,13 +31,13 @@ class EtcpakDecoder final : public ByteDecoder {
   void decode(const std::uint64_t* words, std::uint32_t* rgba, int width) const {
     switch (format_) {
       case BlockFormat::kEtc2Rgba:
-        return DecodeRGBA(words, rgba, width, kSide);
+        return DecodeRGBA(words, rgba, width, kEtcpakDecodedSide);
       case BlockFormat::kEacR11:
-        return DecodeR(words, rgba, width, kSide);
+        return DecodeR(words, rgba, width, kEtcpakDecodedSide);
       case BlockFormat::kEacRg11:
-        return DecodeRG(words, rgba, width, kSide);
+        return DecodeRG(words, rgba, width, kEtcpakDecodedSide);
       default:
-        return DecodeRGB(words, rgba, width, kSide);
+        return DecodeRGB(words, rgba, width, kEtcpakDecodedSide);
     }
   }
 

@@ -15,12 +15,12 @@
 namespace prefilter {
 namespace {
 
-constexpr int kSide = 4;
-constexpr int kTexels = kSide * kSide;
-using Texels = std::array<std::uint32_t, kTexels>;
+constexpr int kEtcpakSide = 4;
+constexpr int kEtcpakTexels = kEtcpakSide * kEtcpakSide;
+using Texels = std::array<std::uint32_t, kEtcpakTexels>;
 
 bool is_of_one_color(const std::uint8_t* rgba) {
-  for (int t = 1; t < kTexels; ++t) {
+  for (int t = 1; t < kEtcpakTexels; ++t) {
     if (std::memcmp(rgba, rgba + std::ptrdiff_t{4} * t, 3) != 0) return false;
   }
   return true;
@@ -64,8 +64,8 @@ class EtcpakEncoder final : public ByteEncoder {
     for (int i = 0; i < row.count; ++i) {
       // etcpak expects the order blue, green, red, alpha.
       Texels texels{};
-      const std::uint8_t* from = row.texels + std::ptrdiff_t{4} * kTexels * i;
-      for (int t = 0; t < kTexels; ++t) {
+      const std::uint8_t* from = row.texels + std::ptrdiff_t{4} * kEtcpakTexels * i;
+      for (int t = 0; t < kEtcpakTexels; ++t) {
         const std::uint8_t* texel = from + std::ptrdiff_t{4} * t;
         const std::uint8_t swapped[] = {texel[2], texel[1], texel[0], texel[3]};
         std::memcpy(&texels[static_cast<std::size_t>(t)], swapped, sizeof swapped);
@@ -89,13 +89,13 @@ class EtcpakEncoder final : public ByteEncoder {
   void encode(const Texels& texels, std::uint64_t* block) const {
     switch (format_) {
       case BlockFormat::kEtc2Rgba:
-        return CompressEtc2Rgba(texels.data(), block, 1, kSide, true);
+        return CompressEtc2Rgba(texels.data(), block, 1, kEtcpakSide, true);
       case BlockFormat::kEacR11:
-        return CompressEacR(texels.data(), block, 1, kSide);
+        return CompressEacR(texels.data(), block, 1, kEtcpakSide);
       case BlockFormat::kEacRg11:
-        return CompressEacRg(texels.data(), block, 1, kSide);
+        return CompressEacRg(texels.data(), block, 1, kEtcpakSide);
       default:
-        return CompressEtc2Rgb(texels.data(), block, 1, kSide, true);
+        return CompressEtc2Rgb(texels.data(), block, 1, kEtcpakSide, true);
     }
   }
 

@@ -12,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kSide = 4;
+constexpr int kSquishSide = 4;
 
 int fit_of(BlockEffort effort) {
   if (effort == BlockEffort::kFast) return squish::kColourRangeFit;
@@ -44,10 +44,10 @@ class SquishEncoder final : public ByteEncoder {
 
   void encode(const BlockRow<std::uint8_t>& row, std::uint8_t* blocks) override {
     for (int i = 0; i < row.count; ++i) {
-      const int columns = i == row.count - 1 ? row.last_columns : kSide;
+      const int columns = i == row.count - 1 ? row.last_columns : kSquishSide;
       int inside = 0;
-      for (int y = 0; y < row.rows_inside; ++y) inside |= ((1 << columns) - 1) << (kSide * y);
-      compress(row.texels + std::ptrdiff_t{4} * kSide * kSide * i, inside,
+      for (int y = 0; y < row.rows_inside; ++y) inside |= ((1 << columns) - 1) << (kSquishSide * y);
+      compress(row.texels + std::ptrdiff_t{4} * kSquishSide * kSquishSide * i, inside,
                blocks + std::ptrdiff_t{bytes_} * i);
     }
   }

@@ -14,10 +14,10 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kPartsPerTask = 8;
+constexpr std::int64_t kDualLoopsPartsPerTask = 8;
 
 // A vertex of a loop, and the edge of its dual cell on which it lies.
-struct Crossing {
+struct DualLoopsCrossing {
   std::int32_t vertex;
   std::uint8_t edge;
   bool is_low_inside;
@@ -36,7 +36,7 @@ struct DoubledFace {
 struct TaskLoops {
   std::vector<std::uint32_t> ends;
   std::vector<std::uint8_t> shares_cell;
-  std::vector<Crossing> crossings;
+  std::vector<DualLoopsCrossing> crossings;
   std::vector<DoubledFace> doubled;
 };
 
@@ -122,10 +122,11 @@ std::map<std::size_t, DoubledFace> doubled_twice(std::vector<DoubledFace> double
 
 // Adds a loop to the quads of its vertices. Among the four dual cells around an edge, the one with
 // the edge at its low sides comes first.
-void add_to_quads(std::span<const Crossing> crossings, std::uint8_t shares_cell, DualLoops* loops) {
+void add_to_quads(std::span<const DualLoopsCrossing> crossings, std::uint8_t shares_cell,
+                  DualLoops* loops) {
   constexpr std::array<std::size_t, 4> kInTurn = {0, 1, 3, 2};
   const auto number = static_cast<std::int32_t>(loops->size());
-  for (const Crossing& crossing : crossings) {
+  for (const DualLoopsCrossing& crossing : crossings) {
     const std::size_t place = kInTurn[crossing.edge % 4U];
     loops->quads[static_cast<std::size_t>(crossing.vertex)]
                 [crossing.is_low_inside ? place : 3 - place] = number;
@@ -198,15 +199,16 @@ DualLoops dual_loops(const ContourTree& tree, const SurfaceVertices& vertices, c
   const DualCells dual(tree);
   const LoopMaker maker(vertices);
   const auto parts = static_cast<std::int64_t>(dual.part_count());
-  std::vector<TaskLoops> tasks(static_cast<std::size_t>(range_count(parts, kPartsPerTask)));
+  std::vector<TaskLoops> tasks(
+      static_cast<std::size_t>(range_count(parts, kDualLoopsPartsPerTask)));
   const auto make_some = [&](std::int64_t begin, std::int64_t end) {
-    TaskLoops& task = tasks[static_cast<std::size_t>(begin / kPartsPerTask)];
+    TaskLoops& task = tasks[static_cast<std::size_t>(begin / kDualLoopsPartsPerTask)];
     for (std::int64_t part = begin; part < end; ++part) {
       dual.for_part(static_cast<std::size_t>(part),
                     [&](const Meeting& leaves) { maker.add(leaves, &task); });
     }
   };
-  parallel_ranges(parts, kPartsPerTask, run.part(0.0, 0.8), make_some);
+  parallel_ranges(parts, kDualLoopsPartsPerTask, run.part(0.0, 0.8), make_some);
   DualLoops loops = join(vertices.positions().size(), &tasks);
   run.report(1.0);
   return loops;

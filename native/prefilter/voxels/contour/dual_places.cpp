@@ -15,11 +15,11 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kLoopsPerTask = 256;
+constexpr std::int64_t kDualPlacesLoopsPerTask = 256;
 // cells; maximum height of a vertex above the center of its loop
 constexpr double kMostHeight = 0.5;
 // minimum cosine between the normals of a loop that counts as smooth
-constexpr double kLeastCosine = 0.5;
+constexpr double kDualPlacesLeastCosine = 0.5;
 constexpr double kSameCorner = 1e-3;  // cells
 
 Vector3 unit(const Vector3& v) {
@@ -62,7 +62,7 @@ class Placer {
     for (const std::int32_t v : loop) {
       const Vector3& n = normals[static_cast<std::size_t>(v)];
       const double cosine = dot(n, up);
-      if (cosine < kLeastCosine) return middles[i];
+      if (cosine < kDualPlacesLeastCosine) return middles[i];
       height += dot(n, positions_[static_cast<std::size_t>(v)] - middles[i]) / cosine;
     }
     height *= 0.5 / static_cast<double>(loop.size());
@@ -176,7 +176,7 @@ void part_corners(const Placer& placer, double cell, std::vector<Feature>* featu
 void place_features(const Placer& placer, double cell, const Run& run, DualPlaces* places) {
   const std::size_t count = places->positions.size();
   std::vector<std::optional<Feature>> found(count);
-  parallel_ranges(static_cast<std::int64_t>(count), kLoopsPerTask, run,
+  parallel_ranges(static_cast<std::int64_t>(count), kDualPlacesLoopsPerTask, run,
                   [&](std::int64_t begin, std::int64_t end) {
                     for (auto i = static_cast<std::size_t>(begin);
                          i < static_cast<std::size_t>(end); ++i) {
@@ -240,7 +240,7 @@ DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& posit
   places.is_corner.assign(loops.size(), 0);
   places.on_edge.assign(loops.size(), -1);
   const auto for_each = [&](std::size_t count, const Run& part, const auto& visit) {
-    parallel_ranges(static_cast<std::int64_t>(count), kLoopsPerTask, part,
+    parallel_ranges(static_cast<std::int64_t>(count), kDualPlacesLoopsPerTask, part,
                     [&](std::int64_t begin, std::int64_t end) {
                       for (auto i = static_cast<std::size_t>(begin);
                            i < static_cast<std::size_t>(end); ++i) {

@@ -11,12 +11,12 @@ namespace {
 
 constexpr double kLeastFacing = 0.05;
 constexpr double kLeastArea = 1e-12;  // double area of a triangle, relative to a cell's face
-constexpr double kAlong = 0.9396926207859084;     // 20 degrees
-constexpr double kBorderReach = 2.0;              // cells
-constexpr double kEdgeReach = 0.3;                // cells
-constexpr double kCrossingReach = 0.2;            // cells
-constexpr double kOnCrossing = 0.05;              // cells
-constexpr double kOpposed = -0.1736481776669303;  // 100 degrees
+constexpr double kAlong = 0.9396926207859084;           // 20 degrees
+constexpr double kFacingBorderReach = 2.0;              // cells
+constexpr double kFacingEdgeReach = 0.3;                // cells
+constexpr double kCrossingReach = 0.2;                  // cells
+constexpr double kOnCrossing = 0.05;                    // cells
+constexpr double kFacingOpposed = -0.1736481776669303;  // 100 degrees
 
 // The common side of two triangles.
 struct SharedSide {
@@ -122,7 +122,7 @@ bool are_at_edge(const MeshView<std::int32_t>& mesh, std::span<const std::int32_
   // A crevice does not count, unless it lies between two parts, which have no border.
   if (!side.is_convex &&
       (first == second ||
-       surface.nearest_border(side.middle, kBorderReach * surface.cell(), first, second))) {
+       surface.nearest_border(side.middle, kFacingBorderReach * surface.cell(), first, second))) {
     return false;
   }
   std::array<Vector3, 2> normals;
@@ -132,11 +132,11 @@ bool are_at_edge(const MeshView<std::int32_t>& mesh, std::span<const std::int32_
     const bool is_turned = turned.contains(label);
     const SourcePoint* sample = sample_along(mesh, triangles[i], label, samples, is_turned);
     if (sample == nullptr) return false;
-    nearest[i] = surface.nearest(side.middle, kEdgeReach * surface.cell(), label);
+    nearest[i] = surface.nearest(side.middle, kFacingEdgeReach * surface.cell(), label);
     if (!nearest[i]) return false;
     normals[i] = is_turned ? -1.0 * sample->normal : sample->normal;
   }
-  if (!(dot(normals[0], normals[1]) < kOpposed)) return false;
+  if (!(dot(normals[0], normals[1]) < kFacingOpposed)) return false;
   // Adjacent parts leave a slit, whose end is not an edge of either.
   return side.is_convex || cross_near(side.middle, *nearest[0], *nearest[1], surface);
 }

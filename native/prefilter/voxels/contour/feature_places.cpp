@@ -16,7 +16,7 @@ constexpr double kCornerReach = 1.0;
 constexpr double kEndReach = 1.5;
 constexpr double kFarCorner = 3.0;
 constexpr double kSettled = 1e-7;
-constexpr int kMostSteps = 12;
+constexpr int kFeaturePlacesMostSteps = 12;
 
 using Labels = std::vector<std::int32_t>;
 
@@ -132,7 +132,7 @@ std::optional<Vector3> FeaturePlaces::corner_near(const Vector3& start,
 // The intersection of regions nearest to a start point, by least-norm steps onto their planes.
 std::optional<Vector3> FeaturePlaces::meeting_of(const Vector3& start, const Labels& labels) const {
   Vector3 at = start;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kFeaturePlacesMostSteps; ++step) {
     std::vector<Vector3> normals;
     std::vector<double> heights;
     for (const std::int32_t label : labels) {

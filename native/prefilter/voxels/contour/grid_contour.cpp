@@ -16,7 +16,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kTaskDepth = 3;
+constexpr int kGridContourTaskDepth = 3;
 
 using CellCoordinates = std::array<int, 3>;
 using Levels = std::vector<TreeLevel>;
@@ -164,7 +164,7 @@ CellTree tree_of(const GridView& grid, int depth, const ContourOptions& options,
   const Stages stages(run, {3, 7});
   const BlockSides sides(grid, options, stages[0]);
   const TreeBuilder builder(grid, sides, options.isovalue, depth);
-  const int task_depth = std::min(kTaskDepth, depth);
+  const int task_depth = std::min(kGridContourTaskDepth, depth);
   const int tasks_along = 1 << task_depth;
   std::vector<Task> tasks(static_cast<std::size_t>(tasks_along * tasks_along * tasks_along));
   const auto task_at = [&](const CellCoordinates& cell) -> Task& {

@@ -15,7 +15,7 @@ namespace prefilter {
 namespace {
 
 constexpr double kRidgeReach = 1.5;  // cells
-constexpr std::int64_t kLoopsPerTask = 64;
+constexpr std::int64_t kLinkedLoopsPerTask = 64;
 
 // The two loops at a side; -1: none.
 using LoopPair = std::array<std::int32_t, 2>;
@@ -124,7 +124,7 @@ LinkedLoops link_loops(std::vector<SharpLoop> loops, const FeatureSurface& surfa
       }
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(linked.size()), kLoopsPerTask, run, find_some);
+  parallel_ranges(static_cast<std::int64_t>(linked.size()), kLinkedLoopsPerTask, run, find_some);
   find_joints(&linked);
   find_shared(&linked);
   return linked;

@@ -11,7 +11,7 @@
 namespace prefilter {
 namespace {
 
-constexpr double kLeastCosine = 0.05;  // minimum cosine of an upright triangle
+constexpr double kLoopTrianglesLeastCosine = 0.05;  // minimum cosine of an upright triangle
 
 using Triangle = std::array<std::int32_t, 3>;
 
@@ -73,7 +73,7 @@ class LoopPart {
     if (normal_ == Vector3{} || size_ > kMost) return false;
     // A single triangle has no alternative.
     for (int k = 1; size_ > 3 && k + 1 < static_cast<int>(size_); ++k) {
-      if (cosine_of(0, k, k + 1) < kLeastCosine) return true;
+      if (cosine_of(0, k, k + 1) < kLoopTrianglesLeastCosine) return true;
     }
     return false;
   }
@@ -90,12 +90,12 @@ class LoopPart {
     const auto cost = [&](int i, int j, int k) {
       constexpr double kFolded = 100.0;
       const double cosine = cosine_of(i, j, k);
-      return cosine < kLeastCosine ? kFolded - cosine : 1.0 - cosine;
+      return cosine < kLoopTrianglesLeastCosine ? kFolded - cosine : 1.0 - cosine;
     };
     std::vector<Triangle> triangles;
     bool is_upright = true;
     triangulate_loop(static_cast<int>(size_), is_allowed, cost, [&](int i, int j, int k) {
-      is_upright = is_upright && cosine_of(i, j, k) >= kLeastCosine;
+      is_upright = is_upright && cosine_of(i, j, k) >= kLoopTrianglesLeastCosine;
       triangles.push_back({vertex(i), vertex(j), vertex(k)});
     });
     if (!is_upright) triangles.clear();

@@ -24,7 +24,7 @@ constexpr double kMostMoved = 0.45;
 constexpr double kMostFar = 2.0;
 constexpr double kUnexplained = 0.08;
 constexpr int kSamples = 6;
-constexpr std::size_t kMostRegions = 3;
+constexpr std::size_t kOccupancySurfaceMostRegions = 3;
 constexpr std::int64_t kCellsPerTask = 512;
 
 std::uint64_t key_of(const CellCoordinates& at) {
@@ -251,9 +251,9 @@ void OccupancySurface::mark_edges() {
 bool OccupancySurface::explains(const std::vector<Candidate>& all,
                                 const CellCoordinates& at) const {
   const auto occupancy = static_cast<double>(occupancy_at(tree_.cells(), depth_, at));
-  const std::size_t count = std::min(all.size(), kMostRegions);
+  const std::size_t count = std::min(all.size(), kOccupancySurfaceMostRegions);
   // Share of the cell inside exactly each set of regions.
-  std::array<double, 1U << kMostRegions> shares{};
+  std::array<double, 1U << kOccupancySurfaceMostRegions> shares{};
   for (int i = 0; i < kSamples * kSamples * kSamples; ++i) {
     const Vector3 point = {at[0] + (i % kSamples + 0.5) / kSamples,
                            at[1] + (i / kSamples % kSamples + 0.5) / kSamples,

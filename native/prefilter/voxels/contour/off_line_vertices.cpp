@@ -9,7 +9,7 @@ namespace prefilter {
 namespace {
 
 constexpr std::uint8_t kMostMoves = 3;
-constexpr double kReachCells = 1.0;
+constexpr double kOffLineVerticesReachCells = 1.0;
 constexpr double kBeyondCells = 0.1;
 
 using Triangle = std::array<std::int32_t, 3>;
@@ -56,8 +56,8 @@ Vector3 OffLineVertices::next_place(const Vector3& from, const Around& around, s
   if (moves_[sample]++ < kMostMoves) {
     const bool is_over = around.across != Vector3{};
     const Vector3 way = is_over ? around.across : 0.5 * (around.mean - from);
-    const std::optional<SourcePoint> found =
-        surface_.nearest(from + way, kReachCells * surface_.cell(), samples_.samples[sample].label);
+    const std::optional<SourcePoint> found = surface_.nearest(
+        from + way, kOffLineVerticesReachCells * surface_.cell(), samples_.samples[sample].label);
     if (found) return found->position;
   }
   return samples_.on_lines[sample];

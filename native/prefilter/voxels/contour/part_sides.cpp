@@ -24,7 +24,7 @@ constexpr std::int64_t kLeavesPerTask = 64;
 // extent across them, if their tip is within reach of features.
 constexpr double kAcute = -0.6;  // 53 degrees
 constexpr double kThinnest = 0.5;
-constexpr double kTipCells = 4.0;
+constexpr double kPartSidesTipCells = 4.0;
 constexpr double kThickestCells = 2.0;
 constexpr double kBodyCells = 1.0;  // minimum length of the wedge behind its end
 
@@ -149,7 +149,7 @@ std::optional<bool> PartSides::side_in_wedge(const Parts& parts, const Vector3& 
   // Half-angle formula: tan(a / 2)^2 = (1 - cos(a)) / (1 + cos(a)).
   const double cosine_of_tip = std::min(1.0, -cosine);
   const double slope = 2.0 * std::sqrt((1.0 - cosine_of_tip) / (1.0 + cosine_of_tip));
-  if (thickness > slope * kTipCells * surface_.cell()) return std::nullopt;
+  if (thickness > slope * kPartSidesTipCells * surface_.cell()) return std::nullopt;
   // The wedge must continue behind that point, or nothing of it would remain.
   const Vector3 middle = center + ((below_first - below_second) / dot(across, across)) * across;
   const Vector3 outer = first + second;

@@ -9,7 +9,7 @@ namespace prefilter {
 namespace {
 
 // Triangles with a smaller height relative to their length have no normal.
-constexpr double kNarrow = 1e-6;
+constexpr double kQuadSurfaceNarrow = 1e-6;
 
 // Two adjacent triangles: the cosine between their normals, -1 if one has none, and a value
 // proportional to the volume between them and a large sphere through their corners.
@@ -30,7 +30,8 @@ Cut cut_of(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& 
   const double other_area = std::sqrt(dot(other, other));
   const double sides = dot(ab, ab) + dot(bc, bc) + dot(ac, ac);
   const double other_sides = dot(ac, ac) + dot(cd, cd) + dot(ad, ad);
-  const bool is_narrow = area <= kNarrow * sides || other_area <= kNarrow * other_sides;
+  const bool is_narrow =
+      area <= kQuadSurfaceNarrow * sides || other_area <= kQuadSurfaceNarrow * other_sides;
   return {is_narrow ? -1.0 : dot(one, other) / (area * other_area),
           area * sides + other_area * other_sides};
 }

@@ -14,13 +14,13 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kLoopsPerTask = 1024;
-constexpr int kPasses = 5;
+constexpr std::int64_t kRelaxPlacesLoopsPerTask = 1024;
+constexpr int kRelaxPlacesPasses = 5;
 constexpr double kStep = 0.5;  // share of the way to the mean
 // minimum weight of a vertex's original corner weights in its new position
 constexpr double kLeastOwn = 0.25;
 // minimum cosine between the normals around a loop that counts as smooth
-constexpr double kLeastCosine = 0.5;
+constexpr double kRelaxPlacesLeastCosine = 0.5;
 
 // The triangles between a vertex and the sides of its loop, as heights over the tangent plane at
 // the vertex.
@@ -37,7 +37,7 @@ class Fan {
   // Whether the loop winds once around the vertex, projected along the normal, and is not steep.
   bool is_flat() const {
     for (std::size_t k = 0; k < loop_.size(); ++k) {
-      if (!(dot(normals_[corner(k)], up_) >= kLeastCosine)) return false;
+      if (!(dot(normals_[corner(k)], up_) >= kRelaxPlacesLeastCosine)) return false;
       if (!(area(arm(k), arm(k + 1)) > 0.0)) return false;
     }
     return true;
@@ -111,7 +111,7 @@ void relax_places(const DualLoops& loops, const std::vector<Vector3>& positions,
     return Fan(loops.loop(i), positions, normals, first[i]);
   };
   const auto for_loops = [&](const Run& part, const auto& visit) {
-    parallel_ranges(static_cast<std::int64_t>(loops.size()), kLoopsPerTask, part,
+    parallel_ranges(static_cast<std::int64_t>(loops.size()), kRelaxPlacesLoopsPerTask, part,
                     [&](std::int64_t begin, std::int64_t end) {
                       for (auto i = static_cast<std::size_t>(begin);
                            i < static_cast<std::size_t>(end); ++i) {
@@ -124,9 +124,9 @@ void relax_places(const DualLoops& loops, const std::vector<Vector3>& positions,
     moves[i] = places->is_sharp[i] == 0 && fan_of(i).is_flat() ? 1 : 0;
   });
   std::vector<Vector3> moved = first;
-  for (int pass = 0; pass < kPasses; ++pass) {
-    const double begin = 0.2 + 0.8 * pass / kPasses;
-    for_loops(run.part(begin, begin + 0.8 / kPasses), [&](std::size_t i) {
+  for (int pass = 0; pass < kRelaxPlacesPasses; ++pass) {
+    const double begin = 0.2 + 0.8 * pass / kRelaxPlacesPasses;
+    for_loops(run.part(begin, begin + 0.8 / kRelaxPlacesPasses), [&](std::size_t i) {
       if (moves[i] == 0) return;
       Vector3 sum{};
       for (std::uint32_t k = loops.begins[i]; k < loops.begins[i + 1]; ++k) {

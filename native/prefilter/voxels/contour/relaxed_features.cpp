@@ -8,7 +8,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kRings = 2;
+constexpr int kRelaxedFeaturesRings = 2;
 constexpr int kSmoothings = 4;
 constexpr int kTurnings = 8;
 
@@ -22,7 +22,7 @@ std::vector<std::size_t> relax_features(std::vector<std::size_t> moving, const L
                                         std::span<const std::uint8_t> is_sharp,
                                         const FeaturePlaces& places, const FeatureTurning& turning,
                                         std::vector<Feature>* features) {
-  for (int ring = 0; ring < kRings; ++ring) {
+  for (int ring = 0; ring < kRelaxedFeaturesRings; ++ring) {
     std::vector<std::size_t> wider = moving;
     for (const std::size_t i : moving) {
       const std::vector<std::size_t> others = loops.joined(i, is_sharp);

@@ -11,7 +11,7 @@ namespace prefilter {
 namespace {
 constexpr double kSteps = 4.0;  // units in the last place
 constexpr double kLeast = 1e-5;
-constexpr double kMost = 0.25;
+constexpr double kRootFrameMost = 0.25;
 constexpr std::int64_t kRowsPerTask = 1 << 16;
 }  // namespace
 
@@ -24,8 +24,8 @@ RootFrame::RootFrame(const Box& root) : origin_(root.low) {
         kSteps / 2.0 * std::numeric_limits<double>::epsilon() * (farthest / root.size(a));
     for (int depth = 0; depth <= kMaxTreeDepth; ++depth) {
       cell_[a][depth] = std::ldexp(root.size(a) / unit_, -depth);
-      least_[a][depth] =
-          std::clamp(std::ldexp(std::max(float_steps, double_steps), depth), kLeast, kMost);
+      least_[a][depth] = std::clamp(std::ldexp(std::max(float_steps, double_steps), depth), kLeast,
+                                    kRootFrameMost);
     }
   }
 }

@@ -15,17 +15,18 @@
 namespace prefilter {
 namespace {
 
-constexpr double kCubeCells = 2.0;
+constexpr double kSettleQuadsCubeCells = 2.0;
 // Number of steps by which a vertex retreats: first to the center of its loop, then to the safe
 // position.
 constexpr std::uint8_t kStepsToMiddle = 3;
-constexpr std::uint8_t kMostSteps = 6;
+constexpr std::uint8_t kSettleQuadsMostSteps = 6;
 constexpr std::uint8_t kMostSlides = 3;
 constexpr double kWithin = 0.5 + 1e-6;  // cells; from a cell's center to its sides
 constexpr double kFlat = 0.5;           // minimum cosine to the mean normal
-constexpr double kOpposed = -0.17;      // maximum cosine between normals of regions: 100 degrees
-constexpr double kEdgeReach = 0.3;      // cells
-constexpr double kNarrow = 1e-6;        // relative to a triangle's longest side
+constexpr double kSettleQuadsOpposed =
+    -0.17;  // maximum cosine between normals of regions: 100 degrees
+constexpr double kSettleQuadsEdgeReach = 0.3;  // cells
+constexpr double kSettleQuadsNarrow = 1e-6;    // relative to a triangle's longest side
 
 using Flags = std::vector<std::uint8_t>;
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
@@ -129,7 +130,7 @@ class Settling {
       });
       if (!is_any) may_intersect[t] = 0;
     }
-    const double side = kCubeCells * std::max({cell_[0], cell_[1], cell_[2]});
+    const double side = kSettleQuadsCubeCells * std::max({cell_[0], cell_[1], cell_[2]});
     Pairs pairs = near_intersections(view, 0, may_intersect, side, run);
     for (const auto& fold : folded_pairs(view, 0, is_suspect, run)) {
       if (!is_at_wedge(fold)) pairs.push_back(fold);
@@ -153,12 +154,13 @@ class Settling {
     for (std::size_t i = 0; i < 2; ++i) {
       const SourcePoint* sample = samples_.of(static_cast<std::int32_t>(fold[i] / 2));
       if (sample == nullptr) return false;
-      if (!surface_of_->nearest(middle, kEdgeReach * surface_of_->cell(), sample->label)) {
+      if (!surface_of_->nearest(middle, kSettleQuadsEdgeReach * surface_of_->cell(),
+                                sample->label)) {
         return false;
       }
       normals[i] = turned_.contains(sample->label) ? -1.0 * sample->normal : sample->normal;
     }
-    return dot(normals[0], normals[1]) < kOpposed;
+    return dot(normals[0], normals[1]) < kSettleQuadsOpposed;
   }
 
   // Whether a triangle faces away from the surface that its quad was sampled from, or is
@@ -167,7 +169,8 @@ class Settling {
     const auto [a, b, c] = view.corners(t);
     const Vector3 normal = cross(b - a, c - a);
     const double longest = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
-    if (dot(normal, normal) <= kNarrow * kNarrow * longest * longest) return true;
+    if (dot(normal, normal) <= kSettleQuadsNarrow * kSettleQuadsNarrow * longest * longest)
+      return true;
     if (samples_.index.empty()) return false;
     const SourcePoint* sample = samples_.of(static_cast<std::int32_t>(t / 2));
     if (sample == nullptr) return false;
@@ -217,8 +220,8 @@ class Settling {
       for (const std::int32_t vertex : triangles_[t]) {
         const auto v = static_cast<std::size_t>(vertex);
         const int step = steps_[v] < kStepsToMiddle ? 0 : steps_[v];
-        const int stage = places_.is_corner[v] != 0 ? kMostSteps + step : step;
-        if (steps_[v] >= kMostSteps || stage > least) continue;
+        const int stage = places_.is_corner[v] != 0 ? kSettleQuadsMostSteps + step : step;
+        if (steps_[v] >= kSettleQuadsMostSteps || stage > least) continue;
         const Vector3& target = step == 0 ? places_.middles[v] : places_.safe[v];
         const double distance = length(surface_.positions[v] - target);
         if (stage == least && found >= 0 &&
@@ -242,9 +245,9 @@ class Settling {
       surface_.positions[v] =
           toward(wanted_[v], places_.middles[v], static_cast<double>(steps_[v]) / kStepsToMiddle);
     } else {
-      surface_.positions[v] =
-          toward(places_.middles[v], places_.safe[v],
-                 static_cast<double>(steps_[v] - kStepsToMiddle) / (kMostSteps - kStepsToMiddle));
+      surface_.positions[v] = toward(places_.middles[v], places_.safe[v],
+                                     static_cast<double>(steps_[v] - kStepsToMiddle) /
+                                         (kSettleQuadsMostSteps - kStepsToMiddle));
     }
   }
 

@@ -13,10 +13,10 @@
 namespace prefilter {
 namespace {
 
-constexpr int kTaskDepth = 3;
-constexpr double kTipCells = 3.0;  // search radius for the vertex that moves to a tip
+constexpr int kSharpVerticesTaskDepth = 3;
+constexpr double kSharpVerticesTipCells = 3.0;  // search radius for the vertex that moves to a tip
 // search radius for a vertex whose line does not cross the surface
-constexpr double kReachCells = 1.25;
+constexpr double kSharpVerticesReachCells = 1.25;
 
 struct Block {
   CellNode cell;
@@ -81,7 +81,8 @@ class Sampler {
     }
     if (!is_known) found = surface_.crossing(from, to, expected);
     const bool is_on_line = found.has_value();
-    if (!is_on_line) found = surface_.nearest(expected, kReachCells * surface_.cell(), -1);
+    if (!is_on_line)
+      found = surface_.nearest(expected, kSharpVerticesReachCells * surface_.cell(), -1);
     if (!found) return;
     Vector3 on_line = from;
     const double offset = found->position[axis] - from[axis];
@@ -105,17 +106,17 @@ class Sampler {
 };
 
 // Grid cells by their coordinates.
-using Place = std::array<std::int64_t, 3>;
+using SharpVerticesPlace = std::array<std::int64_t, 3>;
 
 void move_tips(const SourceSurface& surface, VertexSamples* samples, SurfaceVertices* vertices) {
-  const double reach = kTipCells * surface.cell();
+  const double reach = kSharpVerticesTipCells * surface.cell();
   const auto place_of = [&](const Vector3& p) {
-    Place place;
+    SharpVerticesPlace place;
     for (std::size_t a = 0; a < 3; ++a)
       place[a] = static_cast<std::int64_t>(std::floor(p[a] / reach));
     return place;
   };
-  std::map<Place, std::vector<std::size_t>> tips;
+  std::map<SharpVerticesPlace, std::vector<std::size_t>> tips;
   const auto& corners = surface.regions().corners;
   const auto tip_at = [&](std::size_t i) -> Vector3 {
     return surface.regions().positions[static_cast<std::size_t>(corners[i].vertex)];
@@ -132,7 +133,7 @@ void move_tips(const SourceSurface& surface, VertexSamples* samples, SurfaceVert
   for (std::size_t v = 0; v < samples->index.size(); ++v) {
     const SourcePoint* sample = samples->of(static_cast<std::int32_t>(v));
     if (sample == nullptr) continue;
-    const Place place = place_of(sample->position);
+    const SharpVerticesPlace place = place_of(sample->position);
     for (int k = 0; k < 27; ++k) {
       const auto around =
           tips.find({place[0] + k % 3 - 1, place[1] + k / 3 % 3 - 1, place[2] + k / 9 - 1});
@@ -164,7 +165,7 @@ VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
   std::vector<TaskSamples> tasks(1);
   std::vector<Block> roots;
   const auto above = [&](const auto& self, const Block& block) -> void {
-    if (block.cell.depth == kTaskDepth) {
+    if (block.cell.depth == kSharpVerticesTaskDepth) {
       roots.push_back(block);
       return;
     }

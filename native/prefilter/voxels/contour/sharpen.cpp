@@ -29,10 +29,10 @@
 namespace prefilter {
 namespace {
 
-constexpr double kCubeCells = 2.0;
+constexpr double kSharpenCubeCells = 2.0;
 constexpr int kMostAttempts = 2;
 constexpr int kMostHalvings = 3;
-constexpr std::int64_t kLoopsPerTask = 64;
+constexpr std::int64_t kSharpenLoopsPerTask = 64;
 
 using Triangle = std::array<std::int32_t, 3>;
 using Labels = std::vector<std::int32_t>;
@@ -51,7 +51,7 @@ LoopStates first_states(const LinkedLoops& loops, std::span<const Vector3> posit
                                            samples, is_divided);
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(loops.size()), kLoopsPerTask, run, place_some);
+  parallel_ranges(static_cast<std::int64_t>(loops.size()), kSharpenLoopsPerTask, run, place_some);
   places.claim_corners(&states.features);
   states.is_sharp.assign(loops.size(), 1);
   states.is_single.assign(loops.size(), 0);
@@ -226,7 +226,7 @@ MetPairs met_pairs(const LayeredMesh& layered, const Crossings& crossings, const
   // Triangles far from edges do not change, but may be hit by vertices that left their lines.
   const std::size_t first = 0;
   const MeshView<std::int32_t> view{layered.mesh.positions, layered.mesh.triangles};
-  const double side = kCubeCells * cell;
+  const double side = kSharpenCubeCells * cell;
   const Flags may_meet = keep_rough_suspects(
       view, layered.near, may_intersect(layered, crossings, is_suspect), side, run);
   const auto suspects = std::count(is_suspect.begin(), is_suspect.end(), std::uint8_t{1});
@@ -274,7 +274,7 @@ Pairs faulty_pairs(const LayeredMesh& layered, const Crossings& crossings, const
 }
 
 // The scope of mending: everything, or a zone.
-struct Place {
+struct SharpenPlace {
   const LinkedLoops& loops;
   LoopStates& states;
   LayeredMesh& layered;
@@ -319,13 +319,13 @@ class Mending {
       if (positions[v] != crossings_.fitted(v)) changes_.vertices[v] = 1;
     }
     do {
-      visit_changed([&](Place place) { give_way(places, &place); });
+      visit_changed([&](SharpenPlace place) { give_way(places, &place); });
     } while (changes_.is_any());
     SecondTry again(loops_, wanted, wanted_places, &states_, &positions);
     changes_ = again.changed();
     while (changes_.is_any()) {
       Faulty found;
-      visit_changed([&](Place place) { found = faulty(&place); });
+      visit_changed([&](SharpenPlace place) { found = faulty(&place); });
       if (!found.is_any) break;
       changes_ = again.give_up(found.loops, found.vertices);
     }
@@ -349,16 +349,16 @@ class Mending {
       zone = zones_->enter(loops_, states_, &changes_, &layered_);
     }
     if (!zone) {
-      work(Place{loops_, states_, layered_, changes_, {}, {}});
+      work(SharpenPlace{loops_, states_, layered_, changes_, {}, {}});
       return;
     }
-    work(Place{zone->loops, zone->states, zone->layered, zone->changes, zone->numbers,
-               zone->is_inside});
+    work(SharpenPlace{zone->loops, zone->states, zone->layered, zone->changes, zone->numbers,
+                      zone->is_inside});
     ZoneFinder::leave(std::move(*zone), &states_, &changes_, &layered_);
   }
 
   // Clears the changes.
-  Faults find_faults(Place* place) {
+  Faults find_faults(SharpenPlace* place) {
     LoopChanges& changes = place->changes;
     Faults faults;
     faults.made = assemble(place->loops, plain_, samples_, surface_.cell(), &place->states,
@@ -374,7 +374,7 @@ class Mending {
     return faults;
   }
 
-  void give_way(const FeaturePlaces& places, Place* place) {
+  void give_way(const FeaturePlaces& places, SharpenPlace* place) {
     const auto& [made, pairs] = find_faults(place);
     LoopStates& states = place->states;
     Flags& is_changed = place->changes.loops;
@@ -393,7 +393,7 @@ class Mending {
     }
   }
 
-  Faulty faulty(Place* place) {
+  Faulty faulty(SharpenPlace* place) {
     const auto& [made, pairs] = find_faults(place);
     Faulty found;
     found.is_any = !pairs.empty();

@@ -25,18 +25,18 @@ using Triangle = std::array<std::int32_t, 3>;
 
 // A side of a triangle, stored at its lower vertex; `half` is three times the triangle plus the
 // corner where it begins.
-struct Side {
+struct SmoothRegionsSide {
   std::uint32_t other;  // the higher vertex
   std::uint32_t half;
 
-  bool operator<(const Side& side) const {
+  bool operator<(const SmoothRegionsSide& side) const {
     return other != side.other ? other < side.other : half < side.half;
   }
 };
 
 // The sides of a range of lower vertices, grouped by vertex; `ends` holds the end of each group.
 struct SideRows {
-  std::vector<Side> sides;
+  std::vector<SmoothRegionsSide> sides;
   std::vector<std::uint32_t> ends;
 };
 
@@ -50,16 +50,17 @@ SideRows gather_sides(const WeldedMeshes& welded, std::size_t first, std::size_t
         const auto [low, high] = std::minmax(corners[i], corners[(i + 1) % 3]);
         const auto lower = static_cast<std::size_t>(low);
         if (low == high || lower < first || lower >= end) continue;
-        take(lower - first,
-             Side{static_cast<std::uint32_t>(high), static_cast<std::uint32_t>(3 * t + i)});
+        take(lower - first, SmoothRegionsSide{static_cast<std::uint32_t>(high),
+                                              static_cast<std::uint32_t>(3 * t + i)});
       }
     }
   };
-  for_sides([&](std::size_t row, const Side&) { ++rows.ends[row + 1]; });
+  for_sides([&](std::size_t row, const SmoothRegionsSide&) { ++rows.ends[row + 1]; });
   std::partial_sum(rows.ends.begin(), rows.ends.end(), rows.ends.begin());
   rows.sides.resize(rows.ends.back());
   // Each row's begin moves to its end, where the next row begins.
-  for_sides([&](std::size_t row, const Side& side) { rows.sides[rows.ends[row]++] = side; });
+  for_sides(
+      [&](std::size_t row, const SmoothRegionsSide& side) { rows.sides[rows.ends[row]++] = side; });
   rows.ends.pop_back();
   return rows;
 }
@@ -83,14 +84,14 @@ void for_edges(const WeldedMeshes& welded, std::int64_t sweeps, const Run& run,
         std::size_t next = begin + 1;
         while (next < row_end && rows.sides[next].other == rows.sides[begin].other) ++next;
         visit(static_cast<std::size_t>(sweep), static_cast<std::int32_t>(first + row),
-              std::span<const Side>(rows.sides).subspan(begin, next - begin));
+              std::span<const SmoothRegionsSide>(rows.sides).subspan(begin, next - begin));
         begin = next;
       }
     }
   });
 }
 
-bool runs_up(const WeldedMeshes& welded, const Side& side) {
+bool runs_up(const WeldedMeshes& welded, const SmoothRegionsSide& side) {
   const Triangle corners = welded.triangle(side.half / 3);
   return corners[side.half % 3] < corners[(side.half + 1) % 3];
 }
@@ -115,7 +116,7 @@ bool for_neighbors(const WeldedMeshes& welded, std::int64_t sweeps, const Run& r
                    const Visit& visit) {
   std::atomic<bool> has_single = false;
   for_edges(welded, sweeps, run,
-            [&](std::size_t sweep, std::int32_t low, std::span<const Side> sides) {
+            [&](std::size_t sweep, std::int32_t low, std::span<const SmoothRegionsSide> sides) {
               if (sides.size() == 1) has_single = true;
               if (sides.size() != 2 || runs_up(welded, sides[0]) == runs_up(welded, sides[1])) {
                 return;

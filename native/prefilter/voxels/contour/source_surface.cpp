@@ -17,9 +17,9 @@ namespace prefilter {
 namespace {
 
 constexpr double kBrickCells = 4.0;
-constexpr double kReachCells = 2.5;    // radius of the vicinity of edges
-constexpr double kContactCells = 1.0;  // radius in which parts may meet
-constexpr double kSearchCells = 6.0;   // search radius around that vicinity
+constexpr double kSourceSurfaceReachCells = 2.5;  // radius of the vicinity of edges
+constexpr double kContactCells = 1.0;             // radius in which parts may meet
+constexpr double kSearchCells = 6.0;              // search radius around that vicinity
 constexpr std::size_t kLeafItems = 4;
 constexpr int kBrickBits = 21;
 // Maximum length of borders in a brick, in cells; with more, or with very many parts, edges cannot
@@ -113,7 +113,7 @@ SourceSurface::SourceSurface(std::span<const SourceMesh> sources, const RootFram
 }
 
 void SourceSurface::mark_around(const Box& box) {
-  BrickRange(box, kReachCells * cell_, brick_).for_each([&](std::uint64_t key) {
+  BrickRange(box, kSourceSurfaceReachCells * cell_, brick_).for_each([&](std::uint64_t key) {
     near_bricks_.insert(key);
   });
 }

@@ -10,8 +10,8 @@
 namespace prefilter {
 namespace {
 
-constexpr int kPasses = 2;  // more would shorten regions one quad wide from their ends
-constexpr double kBorderReach = 2.0;
+constexpr int kBorderPasses = 2;  // more would shorten regions one quad wide from their ends
+constexpr double kStraightBordersBorderReach = 2.0;
 
 // The label of at least three of the four vertices around one, if it differs from the vertex's; -1:
 // none.
@@ -36,14 +36,14 @@ std::int32_t label_around(std::size_t vertex, const DualLoops& loops,
 
 void straighten_borders(const DualLoops& loops, const FeatureSurface& surface,
                         VertexSamples* samples, SurfaceVertices* vertices) {
-  for (int pass = 0; pass < kPasses; ++pass) {
+  for (int pass = 0; pass < kBorderPasses; ++pass) {
     std::vector<std::pair<std::size_t, SourcePoint>> changed;
     for (std::size_t v = 0; v < samples->index.size(); ++v) {
       if (samples->index[v] < 0) continue;
       const std::int32_t label = label_around(v, loops, *samples);
       if (label < 0) continue;
-      const std::optional<SourcePoint> there =
-          surface.nearest(vertices->positions()[v], kBorderReach * surface.cell(), label);
+      const std::optional<SourcePoint> there = surface.nearest(
+          vertices->positions()[v], kStraightBordersBorderReach * surface.cell(), label);
       if (there) changed.emplace_back(v, *there);
     }
     if (changed.empty()) return;

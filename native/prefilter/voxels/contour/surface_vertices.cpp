@@ -11,7 +11,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kTaskDepth = 3;
+constexpr int kSurfaceVerticesTaskDepth = 3;
 
 // A split cell with its neighbors.
 struct Visit {
@@ -39,13 +39,13 @@ bool owns(const CellNode& leaf, const CellNode& neighbor, int face) {
 
 // Positions of the surface and of the neighbor's center on the way from a leaf's center, in sides
 // of the leaf.
-struct Crossing {
+struct SurfaceVerticesCrossing {
   float t;
   float distance;
 };
 
-Crossing crossing(const ContourTree& tree, const CellNode& leaf, const CellNode& neighbor,
-                  Interpolant interpolant) {
+SurfaceVerticesCrossing crossing(const ContourTree& tree, const CellNode& leaf,
+                                 const CellNode& neighbor, Interpolant interpolant) {
   const float a = tree.value(leaf);
   const float b = tree.value(neighbor);
   const float isovalue = tree.isovalue();
@@ -137,7 +137,7 @@ class VertexMaker {
 
   Vector3 position(const Visit& visit, int o, int face, const CellNode& leaf,
                    const CellNode& neighbor) const {
-    const Crossing found = crossing(tree_, leaf, neighbor, interpolant_);
+    const SurfaceVerticesCrossing found = crossing(tree_, leaf, neighbor, interpolant_);
     Vector3 result;
     const int shift = leaf.depth - neighbor.depth;
     for (int a = 0; a < 3; ++a) {
@@ -189,7 +189,7 @@ void SurfaceVertices::make(const ContourTree& tree, const RootFrame& frame, Inte
   tasks[0].ranges.resize(levels.size());
   std::vector<Visit> roots;
   const auto above = [&](const auto& self, const Visit& visit) -> void {
-    if (visit.cell.depth == kTaskDepth) {
+    if (visit.cell.depth == kSurfaceVerticesTaskDepth) {
       roots.push_back(visit);
       return;
     }

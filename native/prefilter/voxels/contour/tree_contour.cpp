@@ -32,7 +32,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kPartsPerTask = 8;
+constexpr std::int64_t kTreeContourPartsPerTask = 8;
 constexpr double kLargestAdaptivity = 1e6;  // in cells; beyond the largest root
 
 using Triangle = std::array<std::int32_t, 3>;
@@ -300,16 +300,17 @@ LoopedMesh make_loops(const ContourTree& tree, const Division* division, const R
   const DualCells dual(tree);
   const TriangleMaker maker(*vertices, division);
   const auto parts = static_cast<std::int64_t>(dual.part_count());
-  std::vector<TaskTriangles> tasks(static_cast<std::size_t>(range_count(parts, kPartsPerTask)));
+  std::vector<TaskTriangles> tasks(
+      static_cast<std::size_t>(range_count(parts, kTreeContourPartsPerTask)));
   const auto make_some = [&](std::int64_t begin, std::int64_t end) {
-    TaskTriangles& task = tasks[static_cast<std::size_t>(begin / kPartsPerTask)];
+    TaskTriangles& task = tasks[static_cast<std::size_t>(begin / kTreeContourPartsPerTask)];
     for (std::int64_t part = begin; part < end; ++part) {
       dual.for_part(static_cast<std::size_t>(part),
                     [&](const Meeting& leaves) { maker.add(leaves, &task); });
     }
   };
   const Stages stages(run, {4, 1});
-  parallel_ranges(parts, kPartsPerTask, stages[0], make_some);
+  parallel_ranges(parts, kTreeContourPartsPerTask, stages[0], make_some);
   return join(stages[1], vertices, &tasks);
 }
 

@@ -68,9 +68,9 @@ Crossings crossings_of(const ContourTree& tree, const RootFrame& frame,
 
 namespace {
 
-constexpr int kMostRegions = 8;
-constexpr double kCubeCells = 2.0;
-constexpr int kRings = 4;  // rings of triangles around folds
+constexpr int kUnfoldMostRegions = 8;
+constexpr double kUnfoldCubeCells = 2.0;
+constexpr int kUnfoldRings = 4;  // rings of triangles around folds
 constexpr int kSlidingRings = 3;
 constexpr int kMostRounds = 8;  // of sliding
 // of unfolding loops; loops that share a side may undo each other's changes
@@ -107,7 +107,7 @@ Region region_around(const Pairs& pairs, const MeshView<std::int32_t>& looped) {
       for (const std::int32_t v : looped.triangles[t]) is_inner[static_cast<std::size_t>(v)] = 1;
     }
   }
-  for (int ring = 0; ring < kRings; ++ring) {
+  for (int ring = 0; ring < kUnfoldRings; ++ring) {
     Flags is_next = is_inner;
     for (const Triangle& triangle : looped.triangles) {
       if (!has_flagged(triangle, is_inner)) continue;
@@ -407,7 +407,7 @@ Flags changed_triangles(const Region& before, const Region& after, std::size_t c
 
 void unfold(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
             LoopedMesh* looped) {
-  for (int i = 0; i < kMostRegions; ++i) {
+  for (int i = 0; i < kUnfoldMostRegions; ++i) {
     const Pairs pairs = folded_pairs({looped->positions, looped->triangles}, 0, {}, {});
     if (pairs.empty()) return;
     Region region = region_around(pairs, {looped->positions, looped->triangles});
@@ -433,8 +433,8 @@ void unfold_plain_loops(const VertexSamples& samples, const Vector3& cell, Cross
       is_movable[v] = 1;
     }
   }
-  const double side = kCubeCells * std::min({cell[0], cell[1], cell[2]});
-  for (int i = 0; i < kMostRegions; ++i) {
+  const double side = kUnfoldCubeCells * std::min({cell[0], cell[1], cell[2]});
+  for (int i = 0; i < kUnfoldMostRegions; ++i) {
     Region region = before;
     unfold_all_loops(places, &region);
     slide(places, cell, Folds(&region, is_movable), crossings, &region);

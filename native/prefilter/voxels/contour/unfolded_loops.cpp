@@ -17,7 +17,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kMost = 12;  // corners of a loop
+constexpr std::size_t kUnfoldedLoopsMost = 12;  // corners of a loop
 constexpr double kFoldCost = 1e6;
 
 using Triangle = std::array<std::int32_t, 3>;
@@ -68,10 +68,10 @@ double edge_cost(const Vector3& normal, const Vector3& other) {
 class Loop {
  public:
   std::size_t count = 0;
-  std::array<std::int32_t, kMost> corners;
-  std::array<Vector3, kMost> positions;
-  std::array<Vector3, kMost> around;  // across the side from each corner; 0 if none
-  std::array<std::array<bool, kMost>, kMost> is_free;
+  std::array<std::int32_t, kUnfoldedLoopsMost> corners;
+  std::array<Vector3, kUnfoldedLoopsMost> positions;
+  std::array<Vector3, kUnfoldedLoopsMost> around;  // across the side from each corner; 0 if none
+  std::array<std::array<bool, kUnfoldedLoopsMost>, kUnfoldedLoopsMost> is_free;
 
   Vector3 normal(std::size_t i, std::size_t k, std::size_t j) const {
     return cross(positions[k] - positions[i], positions[j] - positions[i]);
@@ -144,7 +144,8 @@ class Triangulation {
   }
 
   template <typename T>
-  using Table = std::array<std::array<std::array<T, kMost>, kMost>, kMost>;
+  using Table = std::array<std::array<std::array<T, kUnfoldedLoopsMost>, kUnfoldedLoopsMost>,
+                           kUnfoldedLoopsMost>;
 
   const Loop& loop_;
   Table<double> least_;
@@ -155,7 +156,7 @@ class Triangulation {
 };
 
 using Numbers = std::vector<std::uint32_t>;
-using Side = std::array<std::int32_t, 2>;
+using UnfoldedLoopsSide = std::array<std::int32_t, 2>;
 
 // The triangles of cubes, and the triangles at their sides.
 class Cubes {
@@ -179,7 +180,7 @@ class Cubes {
     }
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const Side side = {triangles_[t][k], triangles_[t][(k + 1) % 3]};
+        const UnfoldedLoopsSide side = {triangles_[t][k], triangles_[t][(k + 1) % 3]};
         const bool is_side = (is_near[static_cast<std::size_t>(side[0])] &
                               is_near[static_cast<std::size_t>(side[1])]) != 0;
         if (is_side) at_sides_[side] = static_cast<std::uint32_t>(t);
@@ -224,7 +225,7 @@ class Cubes {
     std::map<std::int32_t, std::int32_t> next;
     for (const std::uint32_t t : numbers) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const Side side = {triangles_[t][k], triangles_[t][(k + 1) % 3]};
+        const UnfoldedLoopsSide side = {triangles_[t][k], triangles_[t][(k + 1) % 3]};
         const auto other = at_sides_.find({side[1], side[0]});
         const bool is_inner = other != at_sides_.end() &&
                               std::binary_search(numbers.begin(), numbers.end(), other->second);
@@ -233,7 +234,7 @@ class Cubes {
       }
     }
     Loop loop;
-    if (next.size() != numbers.size() + 2 || next.size() > kMost) return std::nullopt;
+    if (next.size() != numbers.size() + 2 || next.size() > kUnfoldedLoopsMost) return std::nullopt;
     for (std::int32_t v = next.begin()->first; loop.count < next.size(); v = next.at(v)) {
       if (loop.count > 0 && v == loop.corners[0]) return std::nullopt;
       loop.corners[loop.count] = v;
@@ -291,7 +292,7 @@ class Cubes {
   std::span<const GridPlace> places_;
   std::vector<Triangle>& triangles_;
   std::map<GridPlace, Numbers> in_cubes_;
-  std::map<Side, std::uint32_t> at_sides_;
+  std::map<UnfoldedLoopsSide, std::uint32_t> at_sides_;
 };
 
 }  // namespace

@@ -28,7 +28,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kRowsPerTask = 1 << 15;
+constexpr std::int64_t kCleanUpRowsPerTask = 1 << 15;
 constexpr float kWedgeSlackRadians = 0.0873F;  // 5 degrees, by which wedges may become sharper
 
 using Triangle = std::array<std::int32_t, 3>;
@@ -81,9 +81,9 @@ std::vector<std::uint32_t> triangles_at(const std::vector<Triangle>& triangles,
                                         const Flags& is_flagged, const Run& run) {
   const auto count = static_cast<std::int64_t>(triangles.size());
   std::vector<std::vector<std::uint32_t>> lists(
-      static_cast<std::size_t>(range_count(count, kRowsPerTask)));
+      static_cast<std::size_t>(range_count(count, kCleanUpRowsPerTask)));
   const auto find = [&](std::int64_t begin, std::int64_t end) {
-    std::vector<std::uint32_t>& some = lists[static_cast<std::size_t>(begin / kRowsPerTask)];
+    std::vector<std::uint32_t>& some = lists[static_cast<std::size_t>(begin / kCleanUpRowsPerTask)];
     for (std::int64_t t = begin; t < end; ++t) {
       const auto& [a, b, c] = triangles[static_cast<std::size_t>(t)];
       if (a < 0) continue;  // removed
@@ -93,7 +93,7 @@ std::vector<std::uint32_t> triangles_at(const std::vector<Triangle>& triangles,
       }
     }
   };
-  parallel_ranges(count, kRowsPerTask, run, find);
+  parallel_ranges(count, kCleanUpRowsPerTask, run, find);
   std::vector<std::uint32_t> all;
   for (const auto& some : lists) all.insert(all.end(), some.begin(), some.end());
   return all;
@@ -162,21 +162,22 @@ std::vector<std::uint32_t> edit_patch(const TriangleParts& patches, std::size_t 
 
 RemainingTriangles find_remaining(const std::vector<Triangle>& triangles, const Run& run) {
   const auto rows = static_cast<std::int64_t>(triangles.size());
-  std::vector<std::size_t> begins(static_cast<std::size_t>(range_count(rows, kRowsPerTask)) + 1);
+  std::vector<std::size_t> begins(static_cast<std::size_t>(range_count(rows, kCleanUpRowsPerTask)) +
+                                  1);
   const auto count = [&](std::int64_t begin, std::int64_t end) {
-    std::size_t& some = begins[static_cast<std::size_t>(begin / kRowsPerTask) + 1];
+    std::size_t& some = begins[static_cast<std::size_t>(begin / kCleanUpRowsPerTask) + 1];
     for (std::int64_t t = begin; t < end; ++t) {
       if (triangles[static_cast<std::size_t>(t)] != kRemoved) ++some;
     }
   };
   const Stages stages(run, {3, 7});
-  parallel_ranges(rows, kRowsPerTask, stages[0], count);
+  parallel_ranges(rows, kCleanUpRowsPerTask, stages[0], count);
   std::partial_sum(begins.begin(), begins.end(), begins.begin());
   RemainingTriangles left;
   left.triangles.resize(begins.back());
   left.old_indices.resize(begins.back());
   const auto fill = [&](std::int64_t begin, std::int64_t end) {
-    std::size_t place = begins[static_cast<std::size_t>(begin / kRowsPerTask)];
+    std::size_t place = begins[static_cast<std::size_t>(begin / kCleanUpRowsPerTask)];
     for (std::int64_t i = begin; i < end; ++i) {
       const auto t = static_cast<std::size_t>(i);
       if (triangles[t] == kRemoved) continue;
@@ -185,7 +186,7 @@ RemainingTriangles find_remaining(const std::vector<Triangle>& triangles, const 
       ++place;
     }
   };
-  parallel_ranges(rows, kRowsPerTask, stages[1], fill);
+  parallel_ranges(rows, kCleanUpRowsPerTask, stages[1], fill);
   return left;
 }
 
@@ -417,7 +418,7 @@ void drop_removed(const Run& run, FacetedMesh* result) {
       }
     }
   };
-  parallel_ranges(count, kRowsPerTask, run.part(0.2, 0.5), mark);
+  parallel_ranges(count, kCleanUpRowsPerTask, run.part(0.2, 0.5), mark);
   std::int32_t next = 0;
   for (std::size_t v = 0; v < old_indices.size(); ++v) {
     if (old_indices[v] < 0) continue;
@@ -435,7 +436,7 @@ void drop_removed(const Run& run, FacetedMesh* result) {
       }
     }
   };
-  parallel_ranges(count, kRowsPerTask, run.part(0.6, 1.0), rename);
+  parallel_ranges(count, kCleanUpRowsPerTask, run.part(0.6, 1.0), rename);
 }
 }  // namespace
 

@@ -8,7 +8,7 @@
 namespace prefilter {
 namespace {
 
-constexpr double kCreaseCosine = 0.9659258262890683;  // 15 degrees
+constexpr double kFacetsCreaseCosine = 0.9659258262890683;  // 15 degrees
 
 // Side of a triangle, by its lower and its higher vertex.
 struct CreaseSide {
@@ -130,8 +130,8 @@ void find_creases(std::span<const VertexKind> kinds, std::span<const std::int32_
     const PatchTriangle& a = patch->triangles[sides[i].side / 3];
     const PatchTriangle& b = patch->triangles[sides[i + 1].side / 3];
     const bool is_border = a.label != b.label && a.label != kNoLabel && b.label != kNoLabel;
-    if (!is_border &&
-        (kinds.empty() || dot(unit_normal(*patch, a), unit_normal(*patch, b)) >= kCreaseCosine)) {
+    if (!is_border && (kinds.empty() || dot(unit_normal(*patch, a), unit_normal(*patch, b)) >=
+                                            kFacetsCreaseCosine)) {
       continue;
     }
     set_crease(sides[i].side, patch);

@@ -19,7 +19,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kTrianglesPerTask = 1 << 13;
+constexpr std::int64_t kTestedTrianglesPerTask = 1 << 13;
 constexpr std::int64_t kLeavesPerTask = 1 << 8;
 
 using Mesh = MeshView<std::int32_t>;
@@ -57,9 +57,9 @@ Extent extent_of(const Mesh& mesh, const Run& run) {
   const bool is_small = 3 * mesh.triangles.size() < mesh.positions.size();
   const auto rows =
       static_cast<std::int64_t>(is_small ? mesh.triangles.size() : mesh.positions.size());
-  std::vector<Extent> extents(static_cast<std::size_t>(range_count(rows, kTrianglesPerTask)));
-  parallel_ranges(rows, kTrianglesPerTask, run, [&](std::int64_t begin, std::int64_t end) {
-    Extent& extent = extents[static_cast<std::size_t>(begin / kTrianglesPerTask)];
+  std::vector<Extent> extents(static_cast<std::size_t>(range_count(rows, kTestedTrianglesPerTask)));
+  parallel_ranges(rows, kTestedTrianglesPerTask, run, [&](std::int64_t begin, std::int64_t end) {
+    Extent& extent = extents[static_cast<std::size_t>(begin / kTestedTrianglesPerTask)];
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       if (is_small) {
         for (const Vector3& corner : mesh.corners(i)) extent.include(corner);

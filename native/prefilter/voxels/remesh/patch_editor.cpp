@@ -24,7 +24,7 @@ constexpr double kMinNormalCosine = 0.5;
 constexpr double kMaxDepth = 0.04;
 // Below this depth no other change is tried.
 constexpr double kSmallDepth = 0.005;
-constexpr double kCreaseCosine = 0.9659258262890683;  // 15 degrees
+constexpr double kPatchEditorCreaseCosine = 0.9659258262890683;  // 15 degrees
 
 double squared(const Vector3& v) { return dot(v, v); }
 
@@ -380,7 +380,7 @@ bool PatchEditor::is_crease(std::int32_t a, std::int32_t b, std::uint32_t left,
   };
   const Vector3 n = normal(left);
   const Vector3 m = normal(right);
-  return dot(n, m) < kCreaseCosine * std::sqrt(squared(n)) * std::sqrt(squared(m));
+  return dot(n, m) < kPatchEditorCreaseCosine * std::sqrt(squared(n)) * std::sqrt(squared(m));
 }
 
 void PatchEditor::find_flip(std::int32_t a, std::int32_t b, Change* change) const {

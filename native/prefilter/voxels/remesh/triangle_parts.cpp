@@ -12,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kRowsPerTask = 1 << 15;
+constexpr std::int64_t kTrianglePartsRowsPerTask = 1 << 15;
 // Binary logarithm of the vertices per part, unless there would be too many parts.
 constexpr int kPartBits = 14;
 constexpr std::size_t kMaxParts = 1 << 10;
@@ -42,7 +42,7 @@ TriangleParts parts_along_vertices(std::span<const Triangle> triangles, std::siz
   // Offset in each part at which the triangles of a task begin.
   const auto rows = static_cast<std::int64_t>(triangles.size());
   const std::int64_t rows_per_task =
-      std::max(kRowsPerTask, rows / static_cast<std::int64_t>(kMaxParts));
+      std::max(kTrianglePartsRowsPerTask, rows / static_cast<std::int64_t>(kMaxParts));
   const auto tasks = static_cast<std::size_t>(range_count(rows, rows_per_task));
   std::vector<std::size_t> places(tasks * count);
   const auto add_up = [&](std::int64_t begin, std::int64_t end) {

@@ -15,7 +15,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kTrianglesPerTask = 1 << 13;
+constexpr std::int64_t kTreeTrianglesPerTask = 1 << 13;
 
 using Mesh = MeshView<std::int32_t>;
 
@@ -56,17 +56,17 @@ std::uint64_t key_of(const FloatBox& box, float mean) {
 // Sorted keys, with the key in the upper half of each number and the triangle in the lower.
 std::vector<std::uint64_t> sorted_keys(const Mesh& mesh, const Frame& frame, const Run& run) {
   const auto rows = static_cast<std::int64_t>(mesh.triangles.size());
-  const auto tasks = static_cast<std::size_t>(range_count(rows, kTrianglesPerTask));
+  const auto tasks = static_cast<std::size_t>(range_count(rows, kTreeTrianglesPerTask));
   std::vector<double> sums(tasks);
   const auto measure = [&](std::int64_t begin, std::int64_t end) {
     double sum = 0.0;
     for (std::int64_t t = begin; t < end; ++t) {
       sum += size_of(frame.box_of(mesh.corners(static_cast<std::size_t>(t))));
     }
-    sums[static_cast<std::size_t>(begin / kTrianglesPerTask)] = sum;
+    sums[static_cast<std::size_t>(begin / kTreeTrianglesPerTask)] = sum;
   };
   const Stages stages(run, {12, 13, 75});
-  parallel_ranges(rows, kTrianglesPerTask, stages[0], measure);
+  parallel_ranges(rows, kTreeTrianglesPerTask, stages[0], measure);
   double mean = 0.0;
   for (const double sum : sums) mean += sum;
   mean /= static_cast<double>(rows);
@@ -79,7 +79,7 @@ std::vector<std::uint64_t> sorted_keys(const Mesh& mesh, const Frame& frame, con
           key_of(box, static_cast<float>(mean)) << 32U | static_cast<std::uint64_t>(t);
     }
   };
-  parallel_ranges(rows, kTrianglesPerTask, stages[1], place);
+  parallel_ranges(rows, kTreeTrianglesPerTask, stages[1], place);
   sort_in_parallel(&keys, stages[2]);
   return keys;
 }
@@ -115,7 +115,7 @@ std::vector<TriangleLeaf> make_leaves(const Mesh& mesh, std::span<const std::uin
       make_leaf(mesh, is_suspect, frame, keys.subspan(first, count), &leaves[leaf]);
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(leaves.size()), kTrianglesPerTask / 8, run, fill);
+  parallel_ranges(static_cast<std::int64_t>(leaves.size()), kTreeTrianglesPerTask / 8, run, fill);
   return leaves;
 }
 
@@ -130,7 +130,7 @@ std::vector<TriangleLevel> make_levels(std::span<const TriangleLeaf> leaves, con
       has_others[i] = static_cast<unsigned>(std::popcount(leaf.suspects)) < leaf.count ? 1 : 0;
     }
   };
-  parallel_ranges(count, kTrianglesPerTask, run, make_some);
+  parallel_ranges(count, kTreeTrianglesPerTask, run, make_some);
   std::vector<TriangleLevel> levels;
   while (true) {
     const std::size_t above =

@@ -11,7 +11,7 @@ namespace prefilter {
 namespace {
 
 constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
-constexpr std::size_t kRowsPerReport = 1U << 18U;
+constexpr std::size_t kBorderLoopsRowsPerReport = 1U << 18U;
 
 // A directed edge.
 struct HalfEdge {
@@ -90,7 +90,7 @@ std::vector<std::uint32_t> faces_of(const InputMesh& mesh, const std::vector<std
   std::vector<std::uint32_t> faces(half_edges.size(), BorderLoops::kNone);
   std::vector<unsigned char> has_face(half_edges.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (t % kRowsPerReport == 0) {
+    if (t % kBorderLoopsRowsPerReport == 0) {
       run.report(static_cast<double>(t) / static_cast<double>(mesh.triangles.size()));
     }
     const auto& triangle = mesh.triangles[t];
@@ -121,7 +121,7 @@ std::vector<std::uint32_t> parts_of(const InputMesh& mesh, const std::vector<std
     return vertex;
   };
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (t % kRowsPerReport == 0) {
+    if (t % kBorderLoopsRowsPerReport == 0) {
       run.report(static_cast<double>(t) / static_cast<double>(mesh.triangles.size()));
     }
     const auto& triangle = mesh.triangles[t];

@@ -18,7 +18,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kRowsPerTask = 1 << 14;
+constexpr std::int64_t kClosedPartsRowsPerTask = 1 << 14;
 
 // Component of each vertex, named by its lowest vertex: components are connected by triangles.
 std::vector<std::uint32_t> first_vertices(const InputMesh& mesh, const Run& run) {
@@ -66,14 +66,14 @@ bool has_thin_part(const std::vector<ClosedPart>& parts, double thickness) {
 
 bool is_balanced(const InputMesh& mesh, const Run& run) {
   const auto rows = static_cast<std::int64_t>(mesh.triangles.size());
-  std::vector<EdgeHash> sums(static_cast<std::size_t>(range_count(rows, kRowsPerTask)));
-  parallel_ranges(rows, kRowsPerTask, run, [&](std::int64_t begin, std::int64_t end) {
+  std::vector<EdgeHash> sums(static_cast<std::size_t>(range_count(rows, kClosedPartsRowsPerTask)));
+  parallel_ranges(rows, kClosedPartsRowsPerTask, run, [&](std::int64_t begin, std::int64_t end) {
     EdgeHash sum;
     for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
       const auto [a, b, c] = mesh.triangles[t];
       sum += EdgeHash::of(a, b, c);
     }
-    sums[static_cast<std::size_t>(begin / kRowsPerTask)] = sum;
+    sums[static_cast<std::size_t>(begin / kClosedPartsRowsPerTask)] = sum;
   });
   EdgeHash all;
   for (const EdgeHash& sum : sums) all += sum;

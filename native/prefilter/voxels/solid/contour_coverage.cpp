@@ -16,7 +16,7 @@ constexpr std::int64_t kCoverageRowsPerTask = 1 << 12;
 constexpr double kMarginCells = 3.0;  // around the box
 // Offsets of the samples along the normal, in cells.
 constexpr std::array<double, 5> kNormalOffsets = {0.0, -0.75, 0.75, -1.5, 1.5};
-constexpr double kSampleCells = 2.0;
+constexpr double kContourCoverageSampleCells = 2.0;
 
 // Whether leaves along a normal lie on both sides of 1/2.
 bool has_both_sides(const Octree& octree, const Vector3& point, const Vector3& normal) {
@@ -40,25 +40,25 @@ bool is_inside_all_along(const Octree& octree, const Vector3& point, const Vecto
 template <class Holds, class Set>
 void for_shares(const MeshView<std::int32_t>& mesh, double cell, const Run& run, const Holds& holds,
                 const Set& set) {
-  parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kCoverageRowsPerTask, run,
-                  [&](std::int64_t begin, std::int64_t end) {
-                    for (auto t = static_cast<std::size_t>(begin);
-                         t < static_cast<std::size_t>(end); ++t) {
-                      const std::array<Vector3, 3> corners = mesh.corners(t);
-                      Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-                      const double size = length(normal);
-                      if (size > 0.0) {
-                        for (double& x : normal) x *= cell / size;
-                      }
-                      int count = 0;
-                      int covered = 0;
-                      for_samples(corners, kSampleCells * cell, [&](const Vector3& point) {
-                        ++count;
-                        if (holds(t, point, normal)) ++covered;
-                      });
-                      set(t, static_cast<float>(covered) / static_cast<float>(std::max(count, 1)));
-                    }
-                  });
+  parallel_ranges(
+      static_cast<std::int64_t>(mesh.triangles.size()), kCoverageRowsPerTask, run,
+      [&](std::int64_t begin, std::int64_t end) {
+        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+          const std::array<Vector3, 3> corners = mesh.corners(t);
+          Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+          const double size = length(normal);
+          if (size > 0.0) {
+            for (double& x : normal) x *= cell / size;
+          }
+          int count = 0;
+          int covered = 0;
+          for_samples(corners, kContourCoverageSampleCells * cell, [&](const Vector3& point) {
+            ++count;
+            if (holds(t, point, normal)) ++covered;
+          });
+          set(t, static_cast<float>(covered) / static_cast<float>(std::max(count, 1)));
+        }
+      });
 }
 
 }  // namespace

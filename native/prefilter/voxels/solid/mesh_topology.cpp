@@ -23,15 +23,15 @@ namespace {
 constexpr std::int64_t kFansPerTask = 1 << 13;
 constexpr std::int64_t kTrianglesPerTask = 1 << 14;
 
-using Corners = std::array<std::uint32_t, 3>;
+using MeshTopologyCorners = std::array<std::uint32_t, 3>;
 
 // Triangles in terms of welded vertices.
 struct NamedTriangles {
   const TriangleView& triangles;
   const std::vector<std::int32_t>& names;  // welded vertex of each vertex; empty: no welding
 
-  Corners operator[](std::size_t t) const {
-    Corners corners;
+  MeshTopologyCorners operator[](std::size_t t) const {
+    MeshTopologyCorners corners;
     const auto triangle = triangles[t];
     for (std::size_t i = 0; i < 3; ++i) {
       const auto vertex = static_cast<std::size_t>(triangle[i]);
@@ -42,7 +42,7 @@ struct NamedTriangles {
   }
 };
 
-bool is_flat(const Corners& corners) {
+bool is_flat(const MeshTopologyCorners& corners) {
   const auto& [a, b, c] = corners;
   return a == b || b == c || c == a;
 }
@@ -61,7 +61,7 @@ struct TrianglesAt {
       parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kTrianglesPerTask, part,
                       [&](std::int64_t begin, std::int64_t end) {
                         for (std::int64_t t = begin; t < end; ++t) {
-                          const Corners corners = mesh[static_cast<std::size_t>(t)];
+                          const MeshTopologyCorners corners = mesh[static_cast<std::size_t>(t)];
                           if (is_flat(corners)) continue;
                           for (const std::uint32_t v : corners) {
                             visit(v, static_cast<std::uint32_t>(t));

@@ -40,13 +40,13 @@ bool is_partly_thickened(const PartDecision& part) {
   return part.action == PartAction::kKeepWinding && part.is_thickened;
 }
 
-double area_of(const std::array<Vector3, 3>& p) {
+double open_part_area(const std::array<Vector3, 3>& p) {
   return length(cross(p[1] - p[0], p[2] - p[0])) / 2.0;
 }
 
 std::vector<double> areas_of(const WorkMesh& mesh) {
   std::vector<double> areas(mesh.triangles.size());
-  for (std::size_t t = 0; t < areas.size(); ++t) areas[t] = area_of(mesh.corners(t));
+  for (std::size_t t = 0; t < areas.size(); ++t) areas[t] = open_part_area(mesh.corners(t));
   return areas;
 }
 
@@ -83,7 +83,7 @@ Octree voxels_of(const WorkMesh& mesh, const Patches& patches, double cell, cons
   Octree octree = empty_tree_around(box, cell);
   bool has_area = false;
   for (std::size_t t = 0; t < mesh.triangles.size() && !has_area; ++t) {
-    has_area = area_of(mesh.corners(t)) > 0.0;
+    has_area = open_part_area(mesh.corners(t)) > 0.0;
   }
   if (!has_area) return octree;
   CloseHolesOptions holes;

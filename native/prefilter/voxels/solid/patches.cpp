@@ -40,7 +40,7 @@ std::vector<std::array<std::uint32_t, 3>> neighbors_of(const MeshView<std::int32
   return neighbors;
 }
 
-double area_of(const std::array<Vector3, 3>& corners) {
+double patch_area(const std::array<Vector3, 3>& corners) {
   return length(cross(corners[1] - corners[0], corners[2] - corners[0])) / 2.0;
 }
 
@@ -82,7 +82,7 @@ class PatchWalk {
         }
       }
       const std::array<Vector3, 3> p = mesh_.corners(t);
-      const double area = area_of(p);
+      const double area = patch_area(p);
       const double cone = dot(p[0] - origin, cross(p[1] - origin, p[2] - origin)) / 6.0;
       patch.area += area;
       patch.volume += turned != 0 ? -cone : cone;

@@ -17,7 +17,7 @@ namespace prefilter {
 namespace {
 
 constexpr double kMostCells = 256.0;  // along the longest axis
-constexpr std::int64_t kRowsPerTask = 1 << 10;
+constexpr std::int64_t kReachRowsPerTask = 1 << 10;
 
 // Index of the first cell with a value in [begin, end), or `end`.
 std::size_t first_of(int value, const std::vector<std::uint8_t>& cells, std::size_t begin,
@@ -122,7 +122,7 @@ ReachGrid::ReachGrid(const MeshView<std::int32_t>& mesh, double cell, double gap
 
 void ReachGrid::mark_surface(const MeshView<std::int32_t>& mesh, const Run& run) {
   const CellBox all = {{0, 0, 0}, size_};
-  parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kRowsPerTask, run,
+  parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kReachRowsPerTask, run,
                   [&](std::int64_t begin, std::int64_t end) {
                     for (std::int64_t t = begin; t < end; ++t) {
                       CellPolygon polygon;

@@ -16,7 +16,7 @@ namespace {
 constexpr double kMinThicknessRatio = 0.03;        // of a solid part, as a share of its width
 constexpr double kMinThicknessRatioTurned = 0.12;  // the same if the whole mesh is inside out
 constexpr double kMaxSheetHoleRatio = 0.25;        // as a share of the sheet's area
-constexpr std::size_t kRowsPerReport = 1U << 18U;
+constexpr std::size_t kSheetsRowsPerReport = 1U << 18U;
 
 // A part of the mesh including the caps of its loops.
 struct Part {
@@ -70,7 +70,7 @@ Others measure_parts(const InputMesh& mesh, const BorderLoops& loops, const Unit
   for (auto& [id, part] : *parts) part_of[id] = &part;
   Others others;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (t % kRowsPerReport == 0) {
+    if (t % kSheetsRowsPerReport == 0) {
       run.report(static_cast<double>(t) / static_cast<double>(mesh.triangles.size()));
     }
     const auto first = static_cast<std::size_t>(mesh.triangles[t][0]);

@@ -14,7 +14,7 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kSidesPerTask = 1 << 10;
-constexpr double kSampleCells = 2.0;  // distance between samples
+constexpr double kTriangleSidesSampleCells = 2.0;  // distance between samples
 
 bool is_region(ReachGrid::Label label) { return label >= ReachGrid::kFirstRegion; }
 bool is_outside(ReachGrid::Label label) { return label == ReachGrid::kOutside; }
@@ -27,7 +27,7 @@ TriangleSides sides_of(const std::array<Vector3, 3>& corners, const ReachGrid& g
   for (double& x : normal) x /= size;
   const Vector3 back = {-normal[0], -normal[1], -normal[2]};
   float samples = 0.0F;
-  for_samples(corners, kSampleCells * grid.cell(), [&](const Vector3& point) {
+  for_samples(corners, kTriangleSidesSampleCells * grid.cell(), [&](const Vector3& point) {
     samples += 1.0F;
     const ReachGrid::Label in_front = grid.first_beyond_surface(point, normal);
     const ReachGrid::Label behind = grid.first_beyond_surface(point, back);

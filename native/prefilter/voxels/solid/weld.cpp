@@ -177,26 +177,26 @@ void split_triangle(std::uint32_t t, std::span<const SplitPoint> points, WorkMes
 
 double squared_length(const Vector3& a) { return dot(a, a); }
 
-using Corners = std::array<std::int32_t, 3>;
+using WeldCorners = std::array<std::int32_t, 3>;
 
-bool is_degenerate(const Corners& corners) {
+bool is_degenerate(const WeldCorners& corners) {
   const auto& [a, b, c] = corners;
   return a == b || b == c || c == a;
 }
 
-Corners sorted(Corners corners) {
+WeldCorners sorted(WeldCorners corners) {
   std::sort(corners.begin(), corners.end());
   return corners;
 }
 
 // Whether the corners ascend when starting at the lowest.
-bool is_ascending(const Corners& corners) {
+bool is_ascending(const WeldCorners& corners) {
   const auto& [a, b, c] = corners;
   return (a < b) + (b < c) + (c < a) == 2;
 }
 
 struct Face {
-  Corners corners;  // sorted
+  WeldCorners corners;  // sorted
   std::uint64_t triangle;
   bool operator<(const Face& other) const {
     return corners != other.corners ? corners < other.corners : triangle < other.triangle;
@@ -205,7 +205,7 @@ struct Face {
 
 // Marks, among triangles with the same three corners, the first of the more frequent direction, or
 // the first of all in case of a tie. `faces` is scratch space.
-void keep_one_of_each(const std::vector<Corners>& triangles,
+void keep_one_of_each(const std::vector<WeldCorners>& triangles,
                       std::span<const std::uint64_t> candidates, std::vector<Face>* faces,
                       std::vector<std::uint8_t>* is_kept) {
   faces->clear();
