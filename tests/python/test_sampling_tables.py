@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import prefilter
 import pytest
+from prefilter.sampling import sampling_table
 from prefilter.sampling.sampling_table import STANDARD_TEXELS
 
 SMALL = {"texels": 4, "subdomains": (2, 2, 1)}
@@ -116,3 +117,9 @@ def test_a_file_holds_all_of_a_table(tmp_path):
 def test_building_can_be_cancelled():
     with pytest.raises(prefilter.Cancelled):
         prefilter.SamplingTable.build("lanczos3", progress=lambda fraction: False)
+
+
+def test_a_missing_table_names_the_script_that_makes_it(monkeypatch, tmp_path):
+    monkeypatch.setattr(sampling_table.resources, "files", lambda _: tmp_path)
+    with pytest.raises(FileNotFoundError, match=r"'lanczos2-8\.json'.*scripts/sampling_tables\.py"):
+        prefilter.SamplingTable.standard("lanczos2", 8)

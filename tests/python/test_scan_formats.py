@@ -15,7 +15,7 @@ from scan_writers import COLORS, INTENSITY, NORMALS, POINTS, lines, pcd, ply, wh
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "data" / "points"
 
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "points.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "scans.md"
 
 
 def read(folder, text, name="cloud.xyz"):

@@ -180,11 +180,11 @@ def test_manual_pages_of_subjects_exist():
 
 
 def test_a_wrong_import_is_found():
-    graph = {"addon.core.a": {"addon.bridge.b"}, "addon.mipmaps.c": {"addon.voxels.d", "addon"}}
+    graph = {"addon.core.a": {"addon.bridge.b"}, "addon.textures.c": {"addon.voxels.d", "addon"}}
     assert wrong_imports(graph) == [
         "addon.core.a imports addon.bridge.b",
-        "addon.mipmaps.c imports addon",
-        "addon.mipmaps.c imports addon.voxels.d",
+        "addon.textures.c imports addon",
+        "addon.textures.c imports addon.voxels.d",
     ]
 
 

@@ -13,7 +13,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kCellSamplesSide = CellSamples::kCellSamplesSide;
+constexpr int kCellSamplesSide = CellSamples::kSide;
 constexpr std::uint64_t kCellSamplesAll = ~std::uint64_t{0};
 
 // Compositing stops at this mean transmittance, a quarter of 1/255; together with the sampling

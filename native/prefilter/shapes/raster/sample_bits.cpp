@@ -16,7 +16,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kSampleBitsSide = SampleBits::kSampleBitsSide;
+constexpr int kSampleBitsSide = SampleBits::kSide;
 constexpr int kCount = SampleBits::kCount;
 constexpr std::uint64_t kSampleBitsAll = ~std::uint64_t{0};
 

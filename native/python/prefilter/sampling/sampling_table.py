@@ -166,6 +166,7 @@ class SamplingTable:
 
         Raises:
             ValueError: There is no such table.
+            FileNotFoundError: The table of a new filter has not been made yet.
         """
         name = as_one_of("filter", as_name("filter", filter), SAMPLING_FILTERS)
         if texels not in STANDARD_TEXELS:
@@ -181,7 +182,13 @@ class SamplingTable:
                 )
             name = f"{name}-{target}"
         file = resources.files(__package__) / "tables" / f"{name}-{int(texels)}.json"
-        return cls(_parsed(file.read_bytes()))
+        try:
+            text = file.read_bytes()
+        except FileNotFoundError as error:
+            raise FileNotFoundError(
+                f"sampling table '{file.name}': missing; scripts/sampling_tables.py makes the tables"
+            ) from error
+        return cls(_parsed(text))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> "SamplingTable":
