@@ -186,7 +186,7 @@ class SamplingTable:
             text = file.read_bytes()
         except FileNotFoundError as error:
             raise FileNotFoundError(
-                f"sampling table '{file.name}': missing; scripts/sampling_tables.py makes the tables"
+                f"sampling table '{file.name}': missing; scripts/sampling_tables.py makes it"
             ) from error
         return cls(_parsed(text))
 
