@@ -24,7 +24,7 @@ namespace {
 Array<std::int64_t> bound_subsample(const Array<double>& points, double spacing,
                                     const std::string& method, const py::object& callback,
                                     int threads) {
-  const Run run = to_run(callback);
+  const Run run = to_run(callback, threads);
   const Subsampling chosen = value_named("method", method, kSubsamplingNames);
   std::vector<std::int64_t> kept;
   {
