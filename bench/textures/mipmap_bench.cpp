@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/textures/scene.h"
 #include "bench/peak_memory.h"
+#include "bench/textures/scene.h"
 #include "prefilter/textures/mipmap_error.h"
 #include "prefilter/textures/mipmaps.h"
 
