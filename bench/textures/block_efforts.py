@@ -25,7 +25,7 @@ import prefilter
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.report import Report, add_json_option
-from bench.texture_files.bptc_peers import SIDE, Pixels, decoded, intel
+from bench.textures.bptc_peers import SIDE, Pixels, decoded, intel
 
 ROUNDS = 3
 COARSE = (64, 16, 4)

@@ -23,7 +23,7 @@ from bench.peers import run
 from bench.peers.file_to_file import IN_CPP, FileToFile
 from bench.peers.maketx import Maketx
 from bench.report import Report, add_json_option
-from bench.texture_files.compare_maketx import HERE, SPOT
+from bench.textures.compare_maketx import HERE, SPOT
 from bench.turns import add_table, measure, medians_ratio, named
 
 LIMITS = (

@@ -21,7 +21,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.peers import run
 from bench.peers.file_to_file import IN_CPP, FileToFile
 from bench.report import Report, add_json_option
-from bench.texture_files.compare_maketx import HERE
+from bench.textures.compare_maketx import HERE
 from bench.turns import add_table, measure, medians_ratio, named
 
 

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.report import Report, add_json_option
-from bench.texture_files import subjects
+from bench.textures import subjects
 
 Texels = NDArray[np.float32]
 

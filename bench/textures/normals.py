@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.report import Report, add_json_option
-from bench.texture_files import sampling, subjects
+from bench.textures import sampling, subjects
 
 FILTERS = ("box", "pam-bilinear")
 LEVELS = range(1, 7)

@@ -36,8 +36,8 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.report import Report, add_json_option
-from bench.texture_files import opengl_renderer
-from bench.texture_files.opengl_renderer import Model, Renderer, Texels, averaged
+from bench.textures import opengl_renderer
+from bench.textures.opengl_renderer import Model, Renderer, Texels, averaged
 
 FOLDER = Path(__file__).resolve().parents[2] / "build/opengl"
 MODELS = ("spot", "DamagedHelmet", "AntiqueCamera", "FlightHelmet", "BoomBox")

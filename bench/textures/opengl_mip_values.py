@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.report import Report, add_json_option
-from bench.texture_files import opengl_renderer
-from bench.texture_files.opengl import FOLDER, MODELS, SIZES
-from bench.texture_files.opengl_renderer import Model, Renderer
+from bench.textures import opengl_renderer
+from bench.textures.opengl import FOLDER, MODELS, SIZES
+from bench.textures.opengl_renderer import Model, Renderer
 
 Floats = NDArray[np.float64]
 

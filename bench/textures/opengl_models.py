@@ -20,8 +20,8 @@ import bpy
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from bench.texture_files import cycles, subjects
-from bench.texture_files.sampling import Floats
+from bench.textures import cycles, subjects
+from bench.textures.sampling import Floats
 
 FOLDER = Path(__file__).resolve().parents[2] / "build/opengl"
 

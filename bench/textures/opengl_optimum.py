@@ -23,9 +23,9 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.report import Report, add_json_option
-from bench.texture_files import opengl, opengl_renderer
-from bench.texture_files.opengl_renderer import Model, Renderer, Texels
-from bench.texture_files.sampling import wrapped
+from bench.textures import opengl, opengl_renderer
+from bench.textures.opengl_renderer import Model, Renderer, Texels
+from bench.textures.sampling import wrapped
 
 Floats = NDArray[np.float64]
 Matrix = scipy.sparse.csr_array

@@ -25,10 +25,10 @@ import prefilter
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.report import Report
-from bench.texture_files import maketx_levels, sampling, subjects
-from bench.texture_files.rivals import DILATED, Rivals, is_least_squares
-from bench.texture_files.sampling import Floats, Texels
-from bench.texture_files.subjects import Subject
+from bench.textures import maketx_levels, sampling, subjects
+from bench.textures.rivals import DILATED, Rivals, is_least_squares
+from bench.textures.sampling import Floats, Texels
+from bench.textures.subjects import Subject
 
 SUBJECT = "pam-bilinear"
 TRILINEAR = "pam-trilinear"

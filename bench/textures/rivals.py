@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 import prefilter
 
-from bench.texture_files import maketx_levels, subjects
-from bench.texture_files.sampling import Floats, Texels, wrapped
-from bench.texture_files.subjects import Subject
+from bench.textures import maketx_levels, subjects
+from bench.textures.sampling import Floats, Texels, wrapped
+from bench.textures.subjects import Subject
 
 LEAST_SQUARES = "ls-bilinear"
 KAISER = "kaiser"

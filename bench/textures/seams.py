@@ -21,9 +21,9 @@ import prefilter
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.report import Report
-from bench.texture_files import sampling, subjects
-from bench.texture_files.sampling import Floats, Texels
-from bench.texture_files.subjects import Subject
+from bench.textures import sampling, subjects
+from bench.textures.sampling import Floats, Texels
+from bench.textures.subjects import Subject
 
 LEVELS = range(1, 8)
 BUDGET = 0.01

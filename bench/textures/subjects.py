@@ -19,7 +19,7 @@ from bl_ext.user_default.prefilter.bridge import images, meshes
 from numpy.typing import NDArray
 
 from bench.report import add_json_option
-from bench.texture_files.sampling import Floats, Texels, areas_of, wrapped
+from bench.textures.sampling import Floats, Texels, areas_of, wrapped
 
 DATA = Path(__file__).resolve().parents[3] / "shared/data/textured"
 MODELS = (

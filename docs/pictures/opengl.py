@@ -14,9 +14,8 @@ import numpy as np
 from sheets import encoded, sheet
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from bench.texture_files.opengl_renderer import Model, Renderer, Texels, averaged
-
-from bench.texture_files import opengl, opengl_renderer
+from bench.textures import opengl, opengl_renderer
+from bench.textures.opengl_renderer import Model, Renderer, Texels, averaged
 
 MODEL, SIZE, ANGLE = "spot", 96, 0.35
 PART = (slice(44, 80), slice(28, 76))

@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import demo_scene as demo
 
-from bench.texture_files import sampling
+from bench.textures import sampling
 
 LEVEL = 5
 BUDGETS = (0.0, 0.01)

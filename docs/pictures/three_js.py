@@ -15,7 +15,7 @@ import numpy as np
 from sheets import encoded, sheet
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from bench.texture_files.viewers import three_js
+from bench.textures.viewers import three_js
 
 SHOWN = {"Duck": (slice(18, 76), slice(12, 80)), "BoomBox": (slice(20, 78), slice(16, 84))}
 SIDE, SCALE = 96, 5

@@ -16,7 +16,7 @@ import numpy as np
 from sheets import encoded, sheet
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from bench.texture_files.viewers import three_js
+from bench.textures.viewers import three_js
 
 SHOWN = ("BoomBox", "DamagedHelmet", "Duck")
 SIDE, SCALE = 96, 4

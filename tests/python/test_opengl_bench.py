@@ -12,9 +12,8 @@ pytest.importorskip("moderngl", reason="there is no moderngl to draw with")
 pytest.importorskip("scipy", reason="scipy finds charts")
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from bench.texture_files.opengl_renderer import Model, Renderer, averaged, in_one_piece
-
-from bench.texture_files import opengl_renderer
+from bench.textures import opengl_renderer
+from bench.textures.opengl_renderer import Model, Renderer, averaged, in_one_piece
 
 SIDE, SIZE = 64, 24
 # Mesa's lookups, not its queries, take 2^k (1 + m) to have the logarithm k + m, and half of that.

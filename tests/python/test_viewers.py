@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import prefilter
 import pytest
-from bench.texture_files.viewers import three_js
+
+from bench.textures.viewers import three_js
 
 MODULES = Path(os.environ.get("PREFILTER_NODE_MODULES", "node_modules"))
 

@@ -16,7 +16,7 @@ from pathlib import Path
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
-from bench.texture_files import cycles, subjects
+from bench.textures import cycles, subjects
 
 FOLDER = Path(__file__).resolve().parents[3] / "build/viewers"
 KINDS = {"plain": None, "fitted": "one-lookup", "views": "views"}

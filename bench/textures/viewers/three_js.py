@@ -20,9 +20,8 @@ from typing import Any
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
-from bench.texture_files.viewers.chromium import ask
-
 from bench.report import Report, add_json_option
+from bench.textures.viewers.chromium import ask
 
 FOLDER = Path(__file__).resolve().parents[3] / "build/viewers"
 MODELS = ("BoomBox", "DamagedHelmet", "Duck", "Suzanne")

@@ -17,7 +17,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.append(str(ROOT))
 
-from bench.texture_files import check_exports, exports  # noqa: E402
+from bench.textures import check_exports, exports  # noqa: E402
 
 MODULES = Path(os.environ.get("PREFILTER_NODE_MODULES", "node_modules"))
 SIZES = [(1, 1), (3, 5), (18, 7), (16, 4)]
