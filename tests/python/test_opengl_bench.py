@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""OpenGL's lookups follow its formulas, as bench/mipmaps/opengl.py assumes."""
+"""OpenGL's lookups follow its formulas, as bench/textures/opengl.py assumes."""
 
 import sys
 from pathlib import Path
