@@ -21,7 +21,19 @@ def lanczos(radius):
     return lambda x: np.where(abs(x) < radius, np.sinc(x) * np.sinc(x / radius), 0.0)
 
 
-# The kernel, and how far its polynomials may be from it.
+# Half the width of each kernel's support. A new separable filter needs a line here and, unless it
+# is the box, in KERNELS: all oracles of images, levels and shapes iterate over these tables.
+RADII = {
+    "box": 0.5,
+    "tent": 1.0,
+    "bspline2": 1.5,
+    "mitchell": 2.0,
+    "lanczos2": 2.0,
+    "lanczos3": 3.0,
+    "gaussian": 2.0,
+}
+
+# The kernel, and the largest error of the library's polynomials.
 KERNELS = {
     "tent": (lambda x: np.maximum(0.0, 1 - abs(x)), 1e-7),
     "bspline2": (bspline2, 1e-7),
@@ -30,7 +42,8 @@ KERNELS = {
     "lanczos3": (lanczos(3), 1e-5),
     "gaussian": (lambda x: np.where(abs(x) < 2, np.exp(-np.pi * x**2), 0.0), 5e-6),
 }
-FILTERS = ("box", *KERNELS)
+FILTERS = tuple(RADII)
+RADIAL = ("radial2", "radial3")  # Their oracles integrate over the plane.
 
 
 def tolerance_of(filter):

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import prefilter
+from kernels import KERNELS as FORMULAS
+from kernels import RADII
 from numpy.polynomial import Chebyshev, Polynomial
 
 REACH = 3.0  # the widest filter's
@@ -264,24 +266,9 @@ class Rows:
         return (whole % 2 if fill_rule == "evenodd" else whole != 0).astype(float)
 
 
-def _mitchell(x):
-    x = np.abs(x)
-    near = (7 * x**3 - 12 * x**2 + 16 / 3) / 6
-    return np.where(x < 1, near, (-7 / 3 * x**3 + 12 * x**2 - 20 * x + 32 / 3) / 6)
-
-
-# Formula and radius.
-KERNELS = {
-    "box": (np.ones_like, 0.5),
-    "tent": (lambda x: 1 - np.abs(x), 1.0),
-    "bspline2": (
-        lambda x: np.where(np.abs(x) < 0.5, 0.75 - x**2, 0.5 * (1.5 - np.abs(x)) ** 2),
-        1.5,
-    ),
-    "mitchell": (_mitchell, 2.0),
-    "lanczos2": (lambda x: np.sinc(x) * np.sinc(x / 2), 2.0),
-    "lanczos3": (lambda x: np.sinc(x) * np.sinc(x / 3), 3.0),
-    "gaussian": (lambda x: np.exp(-np.pi * x**2), 2.0),
+# Formula inside the support, and radius.
+KERNELS = {"box": (np.ones_like, RADII["box"])} | {
+    name: (formula, RADII[name]) for name, (formula, _) in FORMULAS.items()
 }
 
 

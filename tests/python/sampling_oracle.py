@@ -12,17 +12,7 @@ from functools import cache, lru_cache
 from itertools import combinations
 
 import numpy as np
-from kernels import KERNELS
-
-RADII = {
-    "box": 0.5,
-    "tent": 1.0,
-    "bspline2": 1.5,
-    "mitchell": 2.0,
-    "lanczos2": 2.0,
-    "lanczos3": 3.0,
-    "gaussian": 2.0,
-}
+from kernels import KERNELS, RADII
 
 
 def _form(filter, x):

@@ -4,6 +4,7 @@
 
 from typing import get_args
 
+import kernels
 import numpy as np
 import prefilter
 import pytest
@@ -45,6 +46,11 @@ def test_a_filter_is_where_its_uses_say(filter, use):
     else:
         with pytest.raises(ValueError, match=f"filter: '{filter.name}' is not one of"):
             RUNS[use](filter.name)
+
+
+def test_every_filter_has_an_oracle():
+    names = {one.name for one in prefilter.PIXEL_FILTERS}
+    assert names == {*kernels.FILTERS, *kernels.RADIAL, "least-squares"}
 
 
 def test_lists_of_names_are_those_of_the_table():
