@@ -57,7 +57,7 @@ class ImageOperator:
         """Returns the image."""
         return [self.chosen_image(context)]
 
-    def aim(self, targets: Sequence[bpy.types.ID]) -> None:
+    def retarget(self, targets: Sequence[bpy.types.ID]) -> None:
         """Keeps the name of the image."""
         self.image = targets[0].name
 
@@ -74,5 +74,5 @@ class MakesImage(WorkOperator):
         outcome = self.work.write()
         image = bpy.data.images[outcome.images[0]]
         is_elsewhere = editors.show_anywhere(context, image)
-        summary = self.tell(outcome)
+        summary = self.report_outcome(outcome)
         return Sentence("{}, shown in the Image editor", summary) if is_elsewhere else summary

@@ -188,7 +188,7 @@ class ObjectsReconstruction:
         go_on(progress, 1.0)
         self._read.clear()
 
-    def making(self) -> Generator[None, None, None]:
+    def build_steps(self) -> Generator[None, None, None]:
         """Makes the surface's mesh in steps, before `write` shows it."""
         assert self._contour is not None
         yield from new_meshes.making_mesh(self._contour)

@@ -147,7 +147,7 @@ class Boolean:
         go_on(progress, 1.0)
         self._read.clear()
 
-    def making(self) -> Generator[None, None, None]:
+    def build_steps(self) -> Generator[None, None, None]:
         """Makes the result's mesh in steps, before `write` shows it."""
         assert self._result is not None
         assert self._result.contour is not None

@@ -148,7 +148,7 @@ class Voxelization:
         go_on(progress, 1.0)
         self._read.clear()
 
-    def making(self) -> Generator[None, None, None]:
+    def build_steps(self) -> Generator[None, None, None]:
         """Makes the results' meshes in steps, before `write` shows them."""
         for result in self._results:
             if result.contour is not None:

@@ -47,7 +47,7 @@ class PREFILTER_OT_import_points(
             return False
         return True
 
-    def is_named(self) -> bool:
+    def has_file(self) -> bool:
         """Whether files are named."""
         return bool(self.paths())
 
@@ -73,6 +73,6 @@ class PREFILTER_OT_import_points(
             bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", **RECONSTRUCT.of_scene(context))
         return summary
 
-    def handed_on(self) -> dict[str, Any]:
+    def restart_settings(self) -> dict[str, Any]:
         """Returns the settings and the files."""
-        return super().handed_on() | self.named_files()
+        return super().restart_settings() | self.named_files()

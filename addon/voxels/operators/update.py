@@ -75,7 +75,7 @@ class PREFILTER_OT_update_voxels(WorkOperator, bpy.types.Operator):
         self.warn(warnings)
         return work
 
-    def following(self, context: bpy.types.Context) -> Generator[float, None, Compute] | None:
+    def read_next_part(self, context: bpy.types.Context) -> Generator[float, None, Compute] | None:
         """Returns a generator that reads the next result, if there is one."""
         assert self._update is not None
         return None if self._update.is_last else self._read_next(context)
@@ -100,7 +100,7 @@ class PREFILTER_OT_update_voxels(WorkOperator, bpy.types.Operator):
         self._update.commit()
         return summary
 
-    def releaser(self) -> Callable[[], None]:
+    def discarder(self) -> Callable[[], None]:
         """Removes the stand-ins for results; returns a callable that releases the rest."""
         if self._update is not None:
             self._update.discard()

@@ -60,7 +60,7 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
         """Returns the selected objects; in Sculpt Mode the sculpted one."""
         return [context.active_object] if context.mode == "SCULPT" else chosen_solids(context)
 
-    def aim(self, targets: Sequence[bpy.types.ID]) -> None:
+    def retarget(self, targets: Sequence[bpy.types.ID]) -> None:
         """Keeps the objects that were selected or sculpted when the button was pressed."""
         self._chosen = list(targets)
 
