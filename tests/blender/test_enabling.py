@@ -26,7 +26,7 @@ WORK = re.compile(r"\w+\.(view\.(errors|figure|canvas)|model\.\w+)")
 OF_PACKAGE = re.compile(
     r"prefilter(\.(_native|files(\..*)?|_border(\..*)?|options(\.(?!flags).*)?|workflows(\.\w+)?"
     r"|images(\.(filters|color))?|meshes(\.surface)?"
-    r"|points(\.scan_files)?|sampling(\.levels)?"
+    r"|points(\.(scan_files|extensions))?|sampling(\.levels)?"
     r"|voxels(\.(octree|contours|thin_places|lost_parts))?))?"
 )
 SLOW = {"argparse", "concurrent.futures", "logging", "tempfile", "zipfile", "OpenImageIO"}

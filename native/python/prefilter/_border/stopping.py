@@ -29,6 +29,7 @@ class _Stopping:
             for signum, handler in zip(_SIGNALS, before, strict=True):
                 # None means Blender's own handler, not Python's; it only waits for another Ctrl-C.
                 signal.signal(signum, signal.SIG_DFL if handler is None else handler)
+            self.number = 0  # Later work in the same process goes on.
 
     @contextmanager
     def held(self) -> Iterator[None]:
