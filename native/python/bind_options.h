@@ -18,8 +18,8 @@
 namespace prefilter::python {
 
 /// Binds a class of options, constructed with the library's defaults, with the common members
-/// `wrap`, `bounds`, `premultiplied` and `threads`, if it has them.
-template <typename Options>
+/// `wrap`, `bounds`, `premultiplied` and, if `kIsParallel`, `threads`, if it has them.
+template <typename Options, bool kIsParallel = true>
 pybind11::class_<Options> bind_options(pybind11::module_& m, const char* name) {
   pybind11::class_<Options> bound(m, name);
   bound.def(pybind11::init<>());
@@ -42,7 +42,7 @@ pybind11::class_<Options> bind_options(pybind11::module_& m, const char* name) {
   if constexpr (requires { &Options::premultiplied; }) {
     bound.def_readwrite("premultiplied", &Options::premultiplied);
   }
-  if constexpr (requires { &Options::run; }) {
+  if constexpr (kIsParallel && requires { &Options::run; }) {
     bound.def_property(
         "threads", [](const Options& o) { return o.run.threads(); },
         [](Options& o, int threads) { o.run = o.run.with_threads(threads); });

@@ -128,7 +128,7 @@ struct PolygonMesh {
 
 void bind_subdivision(py::module_& m) {
   using Options = SubdivisionOptions;
-  auto bound = bind_options<Options>(m, "SubdivisionOptions");
+  auto bound = bind_options<Options, false>(m, "SubdivisionOptions");
   bind_named(bound, "scheme", &Options::scheme, kSubdivisionSchemes);
   bind_named(bound, "boundary", &Options::boundary, kSubdivisionBoundaries);
   bind_named(bound, "uv_smooth", &Options::uv_interpolation, kUvInterpolations);
