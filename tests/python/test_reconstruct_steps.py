@@ -12,6 +12,7 @@ import prefilter
 import pytest
 from command_files import fails, run
 from prefilter.points import sources
+from prefilter.points import steps as point_steps
 from scan_writers import pcd
 
 DEPTH = ("--depth", "6")
@@ -229,6 +230,22 @@ def test_finished_steps_are_not_repeated(scans, expected, tmp_path, capsys):
     # Other settings invalidate all steps.
     assert steps(scans, tmp_path, "--no-fit") == expected("--no-fit")
     assert "Up to date" not in capsys.readouterr().out
+
+
+def test_a_part_can_be_cancelled_while_it_prepares_the_surface(scans, tmp_path, monkeypatch):
+    words = ("reconstruct", *scans, "-o", tmp_path / "surface.ply", *DEPTH, "--work", tmp_path)
+    for step in STEPS[:3]:
+        assert run(*words, "--parts", "2", "--step", step) == 0
+    fractions = []
+
+    def stop(fraction):
+        fractions.append(fraction)
+        return False
+
+    monkeypatch.setattr(point_steps, "as_progress", lambda _: stop)
+    assert run(*words, "--parts", "2", "--step", "part") != 0
+    assert fractions[0] < 0.5
+    assert len(fractions) == 1
 
 
 def test_a_list_of_the_runs(scans, tmp_path, capsys):

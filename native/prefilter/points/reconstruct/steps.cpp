@@ -210,7 +210,7 @@ void part_step(std::size_t number, std::size_t attributes, const StepFiles& file
   const CloudLoad load = load_of(extent.part.points, attributes, options);
   const MemoryPlan plan = plan_memory(*store, load, options);
   ReconstructOptions slab_options = options;
-  slab_options.run = Run(plan.threads);
+  slab_options.run = options.run.with_threads(plan.threads);
   SurfaceParts surface(nullptr, attributes, grid, extent, slab_options, plan.keeps_all,
                        store.get());
   ReconstructReport report;
@@ -222,7 +222,7 @@ void part_step(std::size_t number, std::size_t attributes, const StepFiles& file
       std::vector<PartHead>{{begin, end, report.is_flipped ? 1 : 0, report.is_room ? 1 : 0,
                              report.outliers, report.residual}});
   if (begin < end) {
-    surface.make(begin, end, options.run.part(0.6, 1.0),
+    surface.make(begin, end, slab_options.run.part(0.6, 1.0),
                  [&](const SlabMesh& part) { write_part(part, &file); });
   }
   file.commit();

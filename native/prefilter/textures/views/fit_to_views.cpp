@@ -72,7 +72,7 @@ std::unique_ptr<FilteredImage> filtered(const TexelSource& level, bool is_multip
       level, all,
       FilteredImage::Options{.alpha = has_alpha ? std::optional(kMaxChannels - 1) : std::nullopt,
                              .stays_opaque = !is_multiplied,
-                             .run = Run()});
+                             .run = Run(options.run.threads())});
 }
 
 SolveOptions solve_options(const FilteredImage& image, const ViewFitOptions& options) {
