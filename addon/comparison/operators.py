@@ -29,7 +29,7 @@ class PREFILTER_OT_switch_source(_ResultOperator, bpy.types.Operator):
     bl_idname = "prefilter.switch_source"
     bl_label = "Show Source or Result"
     bl_description = (
-        "Show what the active object was made of in its place, or the result again. Both stay as "
+        "Show the source of the active object in its place, or the result again. Both stay as "
         "they are"
     )
     bl_options = {"REGISTER", "UNDO"}
@@ -53,8 +53,8 @@ class PREFILTER_OT_forget_source(_ResultOperator, bpy.types.Operator):
     bl_idname = "prefilter.forget_source"
     bl_label = "Forget Source"
     bl_description = (
-        "Keep the result alone: the copy of what it was goes, which makes the file smaller. "
-        "Points and curves stay where they are"
+        "Keep only the result: the copy of the original object is removed, which makes the "
+        "file smaller. Points and curves stay where they are"
     )
     bl_options = {"REGISTER", "UNDO"}
 

@@ -102,7 +102,7 @@ class OperatorHooks:
         """Returns whether Adjust Last Operation shows this operator.
 
         Blender polls it before it undoes the result, when the selected objects may be hidden or
-        gone. So the poll has to succeed, and `read` reports what is wrong.
+        gone. So the poll has to succeed, and `read` reports the error.
         """
         last = context.active_operator
         return last is not None and last.bl_idname == cls.bl_rna.identifier

@@ -24,7 +24,7 @@ class PREFILTER_OT_clear_queue(bpy.types.Operator):
 
     bl_idname = "prefilter.clear_queue"
     bl_label = "Clear Queue"
-    bl_description = "Take what has ended out of the list. What waits and what runs stays"
+    bl_description = "Remove finished work from the list. Waiting and running work stays"
     bl_options = frozenset({"INTERNAL"})
 
     @classmethod

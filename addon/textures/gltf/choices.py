@@ -66,11 +66,11 @@ class GltfSettings:
     fallback: str = one_of(
         "none",
         "Fallback",
-        "What other readers show in place of KTX 2 files",
+        "Images that other readers show in place of KTX 2 files",
         FALLBACKS,
         metavar="KIND",
-        flag_description="With a .glb or .gltf file as --output, what other readers show in place "
-        "of KTX 2 files",
+        flag_description="With a .glb or .gltf file as --output, the images that other readers "
+        "show in place of KTX 2 files",
     )
 
 

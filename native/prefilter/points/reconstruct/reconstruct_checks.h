@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Checks the inputs and results of reconstructions; messages state what is required.
+// Checks the inputs and results of reconstructions; messages state the allowed values.
 #pragma once
 
 #include "prefilter/points/reconstruct.h"

@@ -54,8 +54,8 @@ def add_skip_flag(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--skip-up-to-date",
         action="store_true",
-        help="leave alone what was made of the same inputs, by their contents, with the same "
-        "settings; files then keep a number that tells",
+        help="skip outputs that were made from inputs with the same contents and the same "
+        "settings; files then store a number that identifies both",
     )
 
 

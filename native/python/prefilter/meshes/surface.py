@@ -254,7 +254,7 @@ def as_surfaces(surface: Surface | Sequence[Surface] | None) -> list[Surface]:
 def _weights(
     weights: npt.ArrayLike | None, vertices: int, parts: int, noun: str, *, corners: int | None
 ) -> tuple[np.ndarray | None, str]:
-    """Returns weights, and what they belong to: vertices, triangles (or faces), or corners."""
+    """Returns weights and their kind: per vertex, per triangle (or face), or per corner."""
     if weights is None:
         return None, ""
     values = as_array("weights", weights)

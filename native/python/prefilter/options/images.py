@@ -185,7 +185,7 @@ class ResizeSettings:
         RINGING,
         metavar="MODE",
     )
-    wrap: str = one_of("clamp", "Wrap", "What lies outside the image", WRAPS, metavar="MODE")
+    wrap: str = one_of("clamp", "Wrap", "The texels outside the image", WRAPS, metavar="MODE")
     threads: int = threads()
 
     def new_size(self, width: int, height: int) -> tuple[int, int]:
@@ -229,20 +229,20 @@ class ResampleSettings:
     proportions: str = one_of(
         "perspective",
         "Proportions",
-        "How wide what is rectified is by its height, where the size is fitted",
+        "Width by height of the rectified region, where the size is fitted",
         PROPORTIONS,
         metavar="MODE",
     )
     aspect: float = number(
         4 / 3,
         "Aspect Ratio",
-        "The width by the height of what is rectified, such as 4/3",
+        "Width by height of the rectified region, such as 4/3",
         low=0.0,
         high=1e6,
         is_above=True,
         display={"soft_min": 0.1, "soft_max": 10.0, "precision": 4, "step": 1},
         metavar="RATIO",
-        flag_description="the width by the height of what is rectified; sets --proportions given",
+        flag_description="width by height of the rectified region; sets --proportions given",
     )
     filter: str = one_of(
         "lanczos2",
@@ -276,7 +276,7 @@ class ResampleSettings:
         display={"soft_max": 32},
         metavar="N",
     )
-    wrap: str = one_of("border", "Wrap", "What lies outside the image", WRAPS, metavar="MODE")
+    wrap: str = one_of("border", "Wrap", "The texels outside the image", WRAPS, metavar="MODE")
     threads: int = threads()
 
 

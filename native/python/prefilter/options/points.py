@@ -117,8 +117,9 @@ class ScanSettings:
     use_watertight: bool = switch(
         False,
         "Watertight",
-        "Close the surface everywhere. Otherwise it is open where the scan is: what lies far from "
-        "all points, compared with the distance between these, is cut, and small holes are closed",
+        "Close the surface everywhere. Otherwise it is open where the scan is: parts far from "
+        "all points, compared with the distance between these, are cut, and small holes are "
+        "closed",
     )
     trim: float = number(
         0.0,

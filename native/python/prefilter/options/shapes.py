@@ -13,8 +13,10 @@ SOURCES = {
     "auto": Choice(
         "Automatic", "The selected curves and texts; without any, the UV map of the active mesh"
     ),
-    "curves": Choice("Curves and Texts", "What the selected curves and texts fill"),
-    "uv": Choice("UV Map", "A mask of what the faces of the active mesh cover in its UV map"),
+    "curves": Choice("Curves and Texts", "The areas that the selected curves and texts fill"),
+    "uv": Choice(
+        "UV Map", "A mask of the area that the faces of the active mesh cover in its UV map"
+    ),
     "svg": Choice("SVG File", "The drawing in an SVG file"),
 }
 FILTERS = filters_for(
@@ -43,7 +45,7 @@ VIEWS = {
     "top": Choice("Top", "Down along the Z axis of the world"),
     "front": Choice("Front", "Along the Y axis of the world"),
     "right": Choice("Right", "Against the X axis of the world"),
-    "camera": Choice("Camera", "What the scene's camera sees, in its frame"),
+    "camera": Choice("Camera", "The view of the scene's camera, in its frame"),
 }
 COLORS = {
     "material": Choice(

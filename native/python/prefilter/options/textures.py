@@ -255,7 +255,7 @@ class Settings:
     content: str = one_of(
         "auto",
         "Content",
-        "What the image holds, which decides how its levels are made",
+        "The kind of data in the image, which decides how its levels are made",
         CONTENTS,
         metavar="CONTENT",
     )

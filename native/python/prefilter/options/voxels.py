@@ -51,8 +51,8 @@ ORIGINALS = {
 }
 OPERATIONS = {
     "difference": Choice("Difference", "Subtract the others from the active object"),
-    "union": Choice("Union", "Keep what lies in any of the objects"),
-    "intersection": Choice("Intersection", "Keep what lies in all of the objects"),
+    "union": Choice("Union", "Keep the space inside any of the objects"),
+    "intersection": Choice("Intersection", "Keep the space inside all of the objects"),
 }
 OPERANDS = {
     "keep": Choice("Keep", "The other objects stay as they are"),
@@ -94,7 +94,9 @@ class VoxelSettings:
         INTERPOLANTS,
         metavar="NAME",
     )
-    faces: str = one_of("triangles", "Faces", "What the surface is made of", FACES, metavar="NAME")
+    faces: str = one_of(
+        "triangles", "Faces", "The kind of faces of the surface", FACES, metavar="NAME"
+    )
     adaptivity: float = number(
         0.05,
         "Adaptivity",
@@ -109,7 +111,7 @@ class VoxelSettings:
     thickness: float = number(
         1.5,
         "Min Thickness",
-        "What is thinner, and sheets, get this thickness, in cells. If 0, it breaks up or is lost",
+        "Thinner parts and sheets get this thickness, in cells. If 0, they break up or are lost",
         low=0.0,
         high=100.0,
         display={"soft_max": 5.0, "precision": 2, "step": 10},
@@ -118,8 +120,8 @@ class VoxelSettings:
     gap: float = number(
         2.0,
         "Largest Gap",
-        "Where the orientation of faces encloses nothing, fill what the outside does not "
-        "reach through gaps of this width, in cells",
+        "Where the orientation of faces encloses nothing, fill the space that the outside does "
+        "not reach through gaps of this width, in cells",
         low=0.0,
         high=100.0,
         display={"soft_max": 10.0, "precision": 2, "step": 10},
@@ -169,7 +171,7 @@ class VoxelSettings:
         metavar="DEGREES",
     )
     originals: str = one_of(
-        "keep", "Original", "What to do with what the object was", ORIGINALS, flag=""
+        "keep", "Original", "How to treat the original object", ORIGINALS, flag=""
     )
     threads: int = threads()
 
